@@ -1,0 +1,34 @@
+#include "base/grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.h"
+
+namespace atlaswire {
+
+PositionGrid PositionGrid::over(const glm::dvec3& low, const glm::dvec3& high, std::uint32_t bits) {
+  AW_ASSERT(bits >= 8 && bits <= 20);
+  const double side = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  PositionGrid grid;
+  grid.origin = low;
+  grid.bits = bits;
+  grid.step = side > 0 ? side / static_cast<double>((1U << bits) - 1U) : 0x1.0p-20;
+  return grid;
+}
+
+GridPosition PositionGrid::quantize(const glm::dvec3& position) const {
+  const double top = static_cast<double>((1U << bits) - 1U);
+  GridPosition out;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = std::round((position[axis] - origin[axis]) / step);
+    out[axis] = static_cast<std::uint32_t>(std::clamp(cells, 0.0, top));
+  }
+  return out;
+}
+
+glm::dvec3 PositionGrid::position(const GridPosition& p) const { return origin + glm::dvec3(p) * step; }
+
+double PositionGrid::max_error() const { return 0.5 * std::sqrt(3.0) * step; }
+
+}  // namespace atlaswire
