@@ -24,11 +24,11 @@ class ByteReader {
 
   /// The next unsigned or signed integer, or the next IEEE float, most significant octet first.
   template <class T>
-    requires(std::integral<T> || std::floating_point<T>)
-  T read() {
-    using Raw = std::conditional_t<sizeof(T) == 8, std::uint64_t,
-                                   std::conditional_t<sizeof(T) == 4, std::uint32_t,
-                                                      std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
+  requires(std::integral<T> || std::floating_point<T>) T read() {
+    using Raw = std::conditional_t<
+        sizeof(T) == 8, std::uint64_t,
+        std::conditional_t<sizeof(T) == 4, std::uint32_t,
+                           std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>>>;
     std::uint64_t raw = 0;
     if (!take(sizeof(T))) return T{};
     for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -63,8 +63,7 @@ class ByteWriter {
   explicit ByteWriter(ByteBuffer& out) : out_(&out) {}
 
   template <class T>
-    requires(std::integral<T> || std::floating_point<T>)
-  void write(T v) {
+  requires(std::integral<T> || std::floating_point<T>) void write(T v) {
     std::byte raw[sizeof(T)];
     std::memcpy(raw, &v, sizeof(T));
     static_assert(std::endian::native == std::endian::little);

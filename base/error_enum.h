@@ -17,13 +17,13 @@ class EnumCategory final : public std::error_category {
 
 /// Registers `atlaswire::SPACE::ENUM` as an error code. Write it at file scope in the header, after an
 /// `enum class ENUM` (values from 1) and `const char* error_text(ENUM)` in the same namespace.
-#define ATLASWIRE_ERROR_ENUM(SPACE, ENUM)                                                     \
-  namespace atlaswire::SPACE {                                                                \
-  inline constexpr char kCategoryName##ENUM[] = "atlaswire." #SPACE "." #ENUM;                \
-  inline std::error_code make_error_code(ENUM e) {                                            \
-    static const ::atlaswire::EnumCategory<ENUM, kCategoryName##ENUM> category;               \
-    return {static_cast<int>(e), category};                                                   \
-  }                                                                                           \
-  }                                                                                           \
-  template <>                                                                                 \
+#define ATLASWIRE_ERROR_ENUM(SPACE, ENUM)                                       \
+  namespace atlaswire::SPACE {                                                  \
+  inline constexpr char kCategoryName##ENUM[] = "atlaswire." #SPACE "." #ENUM;  \
+  inline std::error_code make_error_code(ENUM e) {                              \
+    static const ::atlaswire::EnumCategory<ENUM, kCategoryName##ENUM> category; \
+    return {static_cast<int>(e), category};                                     \
+  }                                                                             \
+  }                                                                             \
+  template <>                                                                   \
   struct std::is_error_code_enum<::atlaswire::SPACE::ENUM> : std::true_type {}

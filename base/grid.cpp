@@ -1,9 +1,9 @@
 #include "base/grid.h"
 
+#include "base/assert.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "base/assert.h"
 
 namespace atlaswire {
 

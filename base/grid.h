@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-
 #include <glm/vec3.hpp>
 
 namespace atlaswire {
@@ -11,9 +10,9 @@ using GridPosition = glm::u32vec3;
 
 /// The one scene-wide grid that client replicas live on: cubic cells, so that one number bounds the error.
 struct PositionGrid {
-  glm::dvec3 origin{0.0};  ///< scene position of grid point (0,0,0), metres
-  double step = 1e-3;      ///< metres between neighbouring grid points, > 0
-  std::uint32_t bits = 16; ///< per axis, 8..20
+  glm::dvec3 origin{0.0};   ///< scene position of grid point (0,0,0), metres
+  double step = 1e-3;       ///< metres between neighbouring grid points, > 0
+  std::uint32_t bits = 16;  ///< per axis, 8..20
 
   /// The grid over a bounding box: step = longest side / (2^bits - 1). A zero box gets step 2^-20 m.
   static PositionGrid over(const glm::dvec3& low, const glm::dvec3& high, std::uint32_t bits);

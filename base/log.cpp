@@ -1,11 +1,11 @@
 #include "base/log.h"
 
-#include <memory>
-#include <string>
-
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/sinks/stdout_sinks.h>
+
+#include <memory>
+#include <string>
 
 namespace atlaswire {
 

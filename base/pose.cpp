@@ -1,7 +1,6 @@
 #include "base/pose.h"
 
 #include <cmath>
-
 #include <glm/geometric.hpp>
 
 namespace atlaswire {

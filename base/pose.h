@@ -1,10 +1,10 @@
 #pragma once
 
-#include <glm/gtc/quaternion.hpp>
-#include <glm/vec3.hpp>
-
 #include "base/ids.h"
 #include "base/time.h"
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
 
 namespace atlaswire {
 

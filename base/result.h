@@ -1,11 +1,10 @@
 #pragma once
 
+#include <boost/system/result.hpp>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
-
-#include <boost/system/result.hpp>
 
 namespace atlaswire {
 
@@ -17,8 +16,8 @@ struct Error {
 
   Error(std::error_code c, std::string d = {}) : code(c), detail(std::move(d)) {}
   template <class Enum>
-    requires std::is_error_code_enum_v<Enum>
-  Error(Enum e, std::string d = {}) : code(e), detail(std::move(d)) {}
+  requires std::is_error_code_enum_v<Enum> Error(Enum e, std::string d = {})
+      : code(e), detail(std::move(d)) {}
 
   /// One line for people: "detail: code message", or the code's message alone.
   [[nodiscard]] std::string message() const;

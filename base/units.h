@@ -1,12 +1,12 @@
 #pragma once
 
-#include <compare>
-#include <cstdint>
-#include <string_view>
-
 #include "base/error_enum.h"
 #include "base/result.h"
 #include "base/time.h"
+
+#include <compare>
+#include <cstdint>
+#include <string_view>
 
 namespace atlaswire {
 

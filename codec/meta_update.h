@@ -1,0 +1,95 @@
+#pragma once
+
+#include "base/block.h"
+#include "base/bytes.h"
+#include "base/error_enum.h"
+#include "base/grid.h"
+#include "base/ids.h"
+#include "base/patch_layout.h"
+#include "base/result.h"
+#include "base/units.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace atlaswire::codec {
+
+/// A position vertex the client has not seen yet.
+struct NewVertex {
+  VertexId id{};
+  GridPosition position{0};
+};
+
+/// A patch that enters the atlas: its triangles' corners (all sent before or in this update) and block.
+struct AddedPatch {
+  PatchId id{};
+  std::uint8_t triangles = 1;  ///< 1..3
+  PatchClass draw;
+  std::array<VertexId, kMaxPatchCorners> corners{};  ///< the first corner_count(triangles) count
+  Block block;
+};
+
+/// A patch whose block changed.
+struct MovedPatch {
+  PatchId id{};
+  Block block;
+};
+
+/// Everything that changes a client's replica from frame to frame ([SAS] 3.3). Apply in this order: reset,
+/// removed, vertices, added, moved. Vertices stay known after their last patch is removed.
+struct MetaUpdate {
+  FrameId frame{};
+  bool reset = false;  ///< forget every vertex and patch first
+  std::vector<PatchId> removed;
+  std::vector<NewVertex> vertices;
+  std::vector<AddedPatch> added;
+  std::vector<MovedPatch> moved;
+};
+
+/// What limits a decoder: agreed in StreamInfo, checked before memory is allocated.
+struct MetaLimits {
+  std::uint32_t max_vertices = 1U << 22U;  ///< ids below this
+  std::uint32_t max_patches = 1U << 22U;   ///< ids below this
+  std::uint32_t grid_bits = 16;            ///< coordinates below 2^bits
+  Extent2D atlas;                          ///< blocks lie inside
+};
+
+/// Turns updates into bytes; one per client stream, may keep state between updates. Not thread-safe.
+class MetaEncoder {
+ public:
+  virtual ~MetaEncoder() = default;
+  /// Appends the update's bytes to `out`. Ids within each list should ascend: other orders cost bytes.
+  virtual void encode(const MetaUpdate& update, ByteBuffer& out) = 0;
+};
+
+/// The other end. Safe on hostile bytes: bounded memory and time, an Error and no effect on failure.
+class MetaDecoder {
+ public:
+  virtual ~MetaDecoder() = default;
+  virtual Result<MetaUpdate> decode(ByteView bytes) = 0;
+};
+
+/// Which meta codec both ends use; a number on the wire.
+enum class MetaCodecKind : std::uint8_t { kPlain = 1 };
+
+std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLimits& limits);
+std::unique_ptr<MetaDecoder> make_meta_decoder(MetaCodecKind kind, const MetaLimits& limits);
+
+/// Why bytes are no meta update.
+enum class MetaError {
+  kTruncated = 1,
+  kTrailingBytes,
+  kBadVersion,
+  kTooLarge,
+  kIdOutOfRange,
+  kBadPosition,
+  kBadBlock,
+  kBadPatch,
+  kBadOrder
+};
+const char* error_text(MetaError e);
+
+}  // namespace atlaswire::codec
+ATLASWIRE_ERROR_ENUM(codec, MetaError);

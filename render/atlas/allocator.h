@@ -1,0 +1,75 @@
+#pragma once
+
+#include "base/block.h"
+#include "base/ids.h"
+#include "base/units.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace atlaswire::render {
+
+/// What a visible patch wants: the level of [SAS] 4.3, already biased, rounded and clamped.
+struct BlockRequest {
+  PatchId patch{};
+  std::uint8_t width_log2 = 0;
+  std::uint8_t height_log2 = 0;
+  bool transposed = false;
+};
+
+/// A patch and its block.
+struct PlacedPatch {
+  PatchId patch{};
+  Block block;
+};
+
+/// What one frame changed in the atlas. Lists ascend by patch.
+struct LayoutChange {
+  bool reset = false;  ///< every block was placed anew; the lists still name only real differences
+  std::vector<PlacedPatch> added;
+  std::vector<PlacedPatch> moved;
+  std::vector<PatchId> removed;
+  std::vector<PatchId> refused;  ///< visible, but the atlas was full: they hold no block
+};
+
+/// Where the atlas's texels are ([SAS] fig. 11); the members sum to its area.
+struct AtlasUsage {
+  std::uint64_t allocated = 0;
+  std::uint64_t partial_tail = 0;  ///< at the end of partly filled superblocks
+  std::uint64_t on_stacks = 0;     ///< free blocks waiting on a stack
+  std::uint64_t inaccessible = 0;  ///< lost until a reset
+  std::uint64_t free = 0;          ///< whole free superblocks
+};
+
+/// Settings of every allocator.
+struct AllocatorSettings {
+  Extent2D atlas{1024, 1024};         ///< multiples of the superblock side
+  std::uint32_t superblock_log2 = 6;  ///< side 2^n, also the largest block's side
+  std::uint32_t min_block_log2 = 1;   ///< smallest side 2^n; 1 keeps 4:2:0 chroma of neighbours apart
+  double high_water = 0.95;           ///< share of texels outside free superblocks that asks for a reset
+};
+
+/// The atlas's memory: a block for each visible patch, stable while it stays visible at one size. A
+/// deterministic function of its inputs. Implementations: the sequential three-layer reference here;
+/// others (device, quadtree, the paper's S1..S3) move in behind this interface.
+class AtlasAllocator {
+ public:
+  virtual ~AtlasAllocator() = default;
+  /// One frame: `visible` ascends by patch. Patches not in it are released. `may_reset`: this frame is an
+  /// I-frame, so blocks may all move if memory asks for it.
+  virtual const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) = 0;
+  /// Every live block, ascending by patch.
+  [[nodiscard]] virtual std::vector<PlacedPatch> blocks() const = 0;
+  [[nodiscard]] virtual AtlasUsage usage() const = 0;
+  /// The next I-frame should be early: memory is above the high-water mark or a patch was refused.
+  [[nodiscard]] virtual bool wants_reset() const = 0;
+};
+
+/// The sequential model of [SAS] 4.2: request, provisioning and assignment phases, in patch order.
+std::unique_ptr<AtlasAllocator> make_sequential_allocator(const AllocatorSettings& settings,
+                                                          std::uint32_t patch_count);
+
+}  // namespace atlaswire::render

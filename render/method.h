@@ -1,0 +1,90 @@
+#pragma once
+
+#include "base/ids.h"
+#include "base/pose.h"
+#include "base/time.h"
+#include "base/units.h"
+#include "render/atlas/allocator.h"
+#include "render/camera.h"
+#include "render/scene/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace atlaswire::render {
+
+class Device;
+
+/// What one frame is to show: the viewer's newest pose and how far ahead clients may still be drawing it.
+struct FrameRequest {
+  FrameId frame{};
+  Camera camera;
+  Duration cover{};    ///< predict up to this far ahead
+  bool intra = false;  ///< the encoder will make an I-frame of it
+};
+
+/// How long each of a method's stages took; zero where a stage does not apply.
+struct RenderTimings {
+  Duration visibility{};  ///< id passes and marking
+  Duration allocation{};  ///< level selection and atlas memory
+  Duration shading{};     ///< shadows and shading
+  Duration conversion{};  ///< to I420
+};
+
+/// A picture in I420 on the host. Planes are contiguous; borrowed from a ring: valid until the ring comes
+/// round (MethodSettings::frames_in_flight further frames).
+struct I420Picture {
+  Extent2D extent;
+  const std::uint8_t* y = nullptr;
+  const std::uint8_t* u = nullptr;
+  const std::uint8_t* v = nullptr;
+};
+
+/// What a method gives for one frame: a picture to encode and the change that goes with it.
+struct RenderedFrame {
+  FrameId frame{};
+  I420Picture picture;
+  const LayoutChange* change = nullptr;  ///< valid until the next render
+  AtlasUsage usage;
+  std::uint32_t visible_patches = 0;
+  std::uint64_t shaded_texels = 0;
+  double bias = 0;  ///< [SAS] eq. 3; below 0 the atlas has room to spare
+  RenderTimings timings;
+};
+
+/// Settings of all methods; each states its trade.
+struct MethodSettings {
+  Extent2D atlas{1024, 1024};  ///< colour texels; quality against bytes and shading time
+  double fov_scale = 1.2;      ///< >= 1; room for rotation against larger visible sets
+  double id_scale = 1.0;  ///< id buffer pixels per display pixel along a side; small triangles against time
+  std::uint32_t max_views = 2;  ///< visible sets united per frame
+  Duration prediction_step = std::chrono::microseconds(33'333);
+  double max_oversampling = 2.0;       ///< texels a pixel may get when the atlas has room
+  std::uint32_t reshade_interval = 1;  ///< each block is shaded at least every n-th frame; new ones at once
+  std::uint32_t frames_in_flight = 3;
+  AllocatorSettings allocator;  ///< its atlas member follows `atlas`
+};
+
+/// A way to turn views into frames for the encoder: `sas` today. One thread at a time.
+class Method {
+ public:
+  virtual ~Method() = default;
+  /// Picture size that the encoder will get: the atlas, and the coverage plane below it where the scene
+  /// has alpha (luma 0..255 = coverage, chroma 128).
+  [[nodiscard]] virtual Extent2D picture_extent() const = 0;
+  virtual RenderedFrame render(const FrameRequest& request) = 0;
+  /// The atlas's memory wants an early I-frame.
+  [[nodiscard]] virtual bool wants_intra() const = 0;
+  /// Every live patch, ascending: what a new client must be told.
+  [[nodiscard]] virtual std::vector<PlacedPatch> blocks() const = 0;
+};
+
+/// Makes a method by its name. Throws ProgramError for an unknown name, listing the known.
+std::unique_ptr<Method> make_method(const std::string& name, Device& device,
+                                    std::shared_ptr<const Scene> scene, const MethodSettings& settings);
+std::vector<std::string> method_names();
+
+}  // namespace atlaswire::render
