@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Installs what atlaswire needs on Debian 12, from scripts/packages.txt; does nothing when all is there.
+# Usage: scripts/setup.sh [--runtime] [--check]
+#   --runtime  only what built programs need (lines ending in "run")
+#   --check    list what is missing and exit 1; install nothing
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+lines='.'
+check=
+for option in "$@"; do
+  case "$option" in
+    --runtime) lines=' run$' ;;
+    --check) check=1 ;;
+    -h | --help) sed -n '2,5s/^# //p' "$0"; exit 0 ;;
+    *) echo "setup.sh: error: unknown option '$option'; see --help" >&2; exit 2 ;;
+  esac
+done
+mapfile -t packages < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$here/packages.txt" | grep -E "$lines" | sed 's/ run$//')
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  exit 0
+fi
+if [ -n "$check" ]; then
+  printf 'missing: %s\n' "${missing[*]}"
+  exit 1
+fi
+sudo=
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "setup.sh: error: packages are missing and this is not root: run as root: apt-get install ${missing[*]}" >&2; exit 1; }
+  sudo=sudo
+fi
+echo "installing ${#missing[@]} packages: ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+$sudo apt-get update -q
+$sudo apt-get install -y -q --no-install-recommends "${missing[@]}"
