@@ -1,0 +1,280 @@
+#include "base/program.h"
+#include "server/settings.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+
+namespace atlaswire::server {
+
+namespace {
+
+constexpr const char* kVersion = "0.1.0";
+
+constexpr const char* kFooter = R"(Examples:
+  atlasd --scene atrium                       stream the built-in scene on 127.0.0.1:7400
+  atlasd --scene town.glb --listen 0.0.0.0 --atlas 2048x2048 --bitrate 20M
+  atlasd --config atlasd.toml --json-logs     options as TOML keys without dashes: scene = "town.glb"
+  atlasd --mirror 127.0.0.1:5004 --print-sdp > stream.sdp
+      then, while a client is connected:  ffplay -protocol_whitelist file,udp,rtp -i stream.sdp
+      (a late joiner sees the picture from the next I-frame on: --intra-interval frames at most)
+  atlasd --scene town.glb --explain-scene     what the scene needs, and what it is spared
+
+Exit codes: 0 done, 2 usage, 3 scene, 4 no Vulkan device, 5 port in use, 9 cannot write a file.
+SIGTERM or SIGINT drains: clients get a goodbye within 2 s; a second signal ends at once.)";
+
+[[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& allowed) {
+  throw ProgramError(ExitCode::kUsage, fmt::format("{} {}: must be {}", option, given, allowed));
+}
+
+template <class T>
+void demand_range(const char* option, T v, T low, T high, const char* unit = "") {
+  if (!(v >= low && v <= high))
+    refuse(option, fmt::format("{}", v), fmt::format("{}..{}{}", low, high, unit));
+}
+
+/// The texts and numbers that become other types after parsing.
+struct Raw {
+  std::string atlas = "1024x1024";
+  std::string bit_rate = "10M";
+  std::string cover = "auto";
+  std::string mirror;
+  std::string log_level = "info";
+  double prediction_step_ms = 1000.0 / 30;
+  double stats_interval_s = 5;
+  double max_runtime_s = 0;
+  double hello_timeout_s = 5;
+  double idle_timeout_s = 10;
+  int port = 7400;
+  bool explain_scene = false;
+  bool list_devices = false;
+};
+
+void add_scene_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
+  auto* group = app.add_option_group("Scene and device");
+  group->add_option("--scene", s.scene,
+                    "Built-in scene (atrium, atrium:DETAIL) or a glTF file (.gltf, .glb)");
+  group->add_option("--device", s.device,
+                    "Part of a Vulkan device's name; the best one if not given. lavapipe renders on the CPU");
+  group->add_flag("--validation", s.validation, "Vulkan validation layer: finds faults, slows start-up");
+  group->add_flag("--explain-scene", raw.explain_scene, "Print what the scene requires, and why; then exit");
+  group->add_flag("--list-devices", raw.list_devices, "Print the Vulkan devices; then exit");
+}
+
+void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
+  auto& render = s.stream.render;
+  auto* group = app.add_option_group("Picture");
+  group->add_option("--method", s.stream.method, "How views become frames");
+  group->add_option(
+      "--atlas", raw.atlas,
+      "Atlas WxH in texels, multiples of 64: detail against shading time, bitrate and decoding");
+  group->add_option("--fov-scale", render.fov_scale,
+                    "Enlarged field of view, 1..2: room to turn the head against patches nobody looks at");
+  group->add_option("--id-scale", render.id_scale,
+                    "Id buffer pixels per display pixel, 0.25..2: small triangles against visibility time");
+  group->add_option("--views", render.max_views,
+                    "Predicted views united, 1..16: fewer holes when moving against visibility time");
+  group->add_option("--cover", raw.cover,
+                    "Latency to cover in ms, or auto (measured): fewer holes against a larger visible set");
+  group->add_option("--prediction-step", raw.prediction_step_ms,
+                    "Largest time between predicted views, ms, 1..1000");
+  group->add_option("--max-oversampling", render.max_oversampling,
+                    "Texels a pixel may get while the atlas has room, 1..8: sharper against more shading");
+  group->add_option("--reshade-interval", render.reshade_interval,
+                    "Shade each block at least every N-th frame, 1..60: speed against stale reflections");
+  group->add_option("--grid-bits", s.stream.grid_bits,
+                    "Bits an axis of client vertex positions, 8..20: precision against meta bytes");
+}
+
+void add_video_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
+  auto& video = s.stream.video;
+  auto* group = app.add_option_group("Video");
+  group->add_option("--bitrate", raw.bit_rate,
+                    "Video rate such as 10M or 800k; 0: constant quality by --qp, whatever it costs");
+  group->add_option("--qp", video.qp,
+                    "H.264 quantizer when --bitrate is 0, 0..51: lower is better and larger");
+  group->add_option("--fps", s.stream.max_fps,
+                    "Server frames a second at most, 0.1..240: fresher shading against load and bitrate");
+  group->add_option("--intra-interval", video.intra_interval,
+                    "Frames from I-frame to I-frame, 0..10000 (0: only on request): recovery against bytes");
+  group->add_option("--encoder", video.encoder, "auto, h264_nvenc, h264_vaapi or libx264");
+  group->add_option("--preset", video.preset,
+                    "x264 preset, ultrafast..veryslow: bytes against encoding time");
+  group->add_option("--encoder-threads", video.threads,
+                    "Slices encoded side by side, 1..16: speed against a little compression");
+}
+
+void add_network_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
+  auto* group = app.add_option_group("Network");
+  group->add_option("--listen", s.listen, "Address to listen on; 0.0.0.0 or :: lets other machines in");
+  group->add_option("--port", raw.port, "TCP and UDP port, 0..65535; 0: any free one (see --ready-file)");
+  group->add_option("--max-sessions", s.admission.max_sessions,
+                    "Clients streamed to at once, 1..1024; each costs a whole stream of its own");
+  group->add_option("--max-connections", s.admission.max_connections, "TCP connections at once, 1..65536");
+  group->add_option("--max-connections-per-address", s.admission.max_connections_per_address,
+                    "TCP connections at once from one address, 1..65536");
+  group->add_option("--hello-timeout", raw.hello_timeout_s,
+                    "Seconds a client has from connecting to its first valid datagram, 0.1..600");
+  group->add_option("--idle-timeout", raw.idle_timeout_s,
+                    "Seconds without a pose or report until a session ends, 0.1..3600");
+  group->add_option("--payload", s.delivery.payload_bytes,
+                    "RTP payload bytes a packet, 200..1400: fewer packets against the path's MTU");
+  group->add_option("--pacing", s.delivery.pacing,
+                    "Frames leave at this multiple of --bitrate, 1..100: latency against bursts");
+  group->add_option("--mirror", raw.mirror,
+                    "HOST:PORT that gets a copy of the first live stream's RTP, for ffplay or GStreamer");
+}
+
+void add_report_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
+  auto* group = app.add_option_group("Reports");
+  group->add_flag("--print-sdp", s.print_sdp, "Print the mirrored stream's SDP on stdout, and go on serving");
+  group->add_option("--ready-file", s.ready_file,
+                    R"(Write {"port":N,"pid":N} here, atomically, once clients may connect)");
+  group->add_option("--stats-interval", raw.stats_interval_s, "Seconds between statistics lines; 0: none");
+  group->add_option("--stats-csv", s.stats_csv,
+                    "Write a line per frame: stage times, bytes, visible patches");
+  group->add_option("--max-runtime", raw.max_runtime_s, "Drain and exit 0 after this many seconds; 0: never");
+  group->add_option("--log-level", raw.log_level, "trace, debug, info, warn, error or off");
+  group->add_flag("--json-logs", s.log.json, "Log one JSON object a line on stderr");
+}
+
+Duration parse_seconds(const char* option, double seconds, double low, double high) {
+  demand_range(option, seconds, low, high, " seconds");
+  return from_seconds(seconds);
+}
+
+void apply_cover(const std::string& text, CoverSettings& cover) {
+  if (text == "auto") return;
+  double ms = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, ms);
+  const bool whole = parsed.ec == std::errc{} && parsed.ptr == end;
+  if (!whole || !(ms >= 0 && ms <= 10'000)) refuse("--cover", text, "auto or 0..10000 (ms)");
+  cover.fixed = from_seconds(ms / 1000);
+}
+
+void apply_picture(const Raw& raw, StreamSettings& s) {
+  auto& render = s.render;
+  const auto atlas = parse_extent(raw.atlas);
+  const auto fits = [](std::uint32_t side) { return side >= 64 && side <= 8192 && side % 64 == 0; };
+  if (!atlas || !fits(atlas->width) || !fits(atlas->height)) {
+    refuse("--atlas", raw.atlas, "WxH, each side a multiple of 64 in 64..8192");
+  }
+  render.atlas = *atlas;
+  render.allocator.atlas = *atlas;
+  demand_range("--fov-scale", render.fov_scale, 1.0, 2.0);
+  demand_range("--id-scale", render.id_scale, 0.25, 2.0);
+  demand_range("--views", render.max_views, 1U, 16U);
+  demand_range("--prediction-step", raw.prediction_step_ms, 1.0, 1000.0, " ms");
+  render.prediction_step = from_seconds(raw.prediction_step_ms / 1000);
+  demand_range("--max-oversampling", render.max_oversampling, 1.0, 8.0);
+  demand_range("--reshade-interval", render.reshade_interval, 1U, 60U);
+  demand_range("--grid-bits", s.grid_bits, 8U, 20U);
+  apply_cover(raw.cover, s.cover);
+}
+
+void apply_video(const Raw& raw, StreamSettings& s) {
+  auto& video = s.video;
+  const auto rate = parse_bit_rate(raw.bit_rate);
+  if (!rate || (rate->bits_per_second != 0 && rate->bits_per_second < 10'000) ||
+      rate->bits_per_second > 2'000'000'000) {
+    refuse("--bitrate", raw.bit_rate, "0 or a rate such as 800k or 10M, 10k..2G");
+  }
+  video.bit_rate = *rate;
+  demand_range("--qp", video.qp, 0, 51);
+  demand_range("--fps", s.max_fps, 0.1, 240.0);
+  video.frame_rate = s.max_fps;
+  demand_range("--intra-interval", video.intra_interval, 0U, 10'000U);
+  demand_range("--encoder-threads", video.threads, 1U, 16U);
+  constexpr std::array kEncoders{"auto", "h264_nvenc", "h264_vaapi", "libx264"};
+  if (std::find(kEncoders.begin(), kEncoders.end(), video.encoder) == kEncoders.end()) {
+    refuse("--encoder", video.encoder, fmt::format("one of {}", fmt::join(kEncoders, ", ")));
+  }
+  constexpr std::array kPresets{"ultrafast", "superfast", "veryfast", "faster",  "fast",
+                                "medium",    "slow",      "slower",   "veryslow"};
+  if (std::find(kPresets.begin(), kPresets.end(), video.preset) == kPresets.end()) {
+    refuse("--preset", video.preset, fmt::format("one of {}", fmt::join(kPresets, ", ")));
+  }
+}
+
+void apply_network(const Raw& raw, DaemonSettings& s) {
+  demand_range("--port", raw.port, 0, 65'535);
+  s.port = static_cast<std::uint16_t>(raw.port);
+  demand_range("--max-sessions", s.admission.max_sessions, 1U, 1024U);
+  demand_range("--max-connections", s.admission.max_connections, 1U, 65'536U);
+  demand_range("--max-connections-per-address", s.admission.max_connections_per_address, 1U, 65'536U);
+  s.admission.hello_timeout = parse_seconds("--hello-timeout", raw.hello_timeout_s, 0.1, 600);
+  s.admission.idle_timeout = parse_seconds("--idle-timeout", raw.idle_timeout_s, 0.1, 3600);
+  demand_range("--payload", s.delivery.payload_bytes, 200U, 1400U);
+  demand_range("--pacing", s.delivery.pacing, 1.0, 100.0);
+  if (!raw.mirror.empty()) s.mirror = parse_endpoint(raw.mirror, "--mirror");
+}
+
+void apply_reports(const Raw& raw, DaemonSettings& s) {
+  s.stats_interval = parse_seconds("--stats-interval", raw.stats_interval_s, 0, 86'400);
+  s.max_runtime = parse_seconds("--max-runtime", raw.max_runtime_s, 0, 1e9);
+  constexpr std::array kLevels{"trace", "debug", "info", "warn", "error", "off"};
+  if (std::find(kLevels.begin(), kLevels.end(), raw.log_level) == kLevels.end()) {
+    refuse("--log-level", raw.log_level, fmt::format("one of {}", fmt::join(kLevels, ", ")));
+  }
+  s.log.level = spdlog::level::from_str(raw.log_level);
+}
+
+Mode mode_of(const Raw& raw) {
+  if (raw.list_devices) return Mode::kListDevices;
+  return raw.explain_scene ? Mode::kExplainScene : Mode::kServe;
+}
+
+}  // namespace
+
+Options parse_options(int argc, const char* const* argv) {
+  Options options;
+  Raw raw;
+  CLI::App app{"atlasd: renders a scene's potentially visible surfaces into a texture atlas and streams it",
+               "atlasd"};
+  app.footer(kFooter);
+  app.set_version_flag("--version", std::string("atlasd ") + kVersion);
+  app.set_config("--config", "", "Read options from this TOML file; the command line wins");
+  app.allow_config_extras(CLI::config_extras_mode::error);
+  app.option_defaults()->always_capture_default();
+  add_scene_options(app, options.settings, raw);
+  add_picture_options(app, options.settings, raw);
+  add_video_options(app, options.settings, raw);
+  add_network_options(app, options.settings, raw);
+  add_report_options(app, options.settings, raw);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    return {Mode::kPrint, {}, app.help()};
+  } catch (const CLI::CallForVersion&) {
+    return {Mode::kPrint, {}, app.version() + "\n"};
+  } catch (const CLI::ParseError& e) {
+    throw ProgramError(ExitCode::kUsage, std::string(e.what()) + "; see atlasd --help");
+  }
+  apply_picture(raw, options.settings.stream);
+  apply_video(raw, options.settings.stream);
+  apply_network(raw, options.settings);
+  apply_reports(raw, options.settings);
+  options.mode = mode_of(raw);
+  return options;
+}
+
+MirrorSettings parse_endpoint(const std::string& text, const std::string& option) {
+  const auto fail = [&] { refuse(option, text, "HOST:PORT or [IPV6]:PORT, port 1..65535"); };
+  const auto colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) fail();
+  std::string host = text.substr(0, colon);
+  if (host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  unsigned port = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data() + colon + 1, end, port);
+  if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0 || port > 65'535 || host.empty()) fail();
+  return {host, static_cast<std::uint16_t>(port)};
+}
+
+}  // namespace atlaswire::server
