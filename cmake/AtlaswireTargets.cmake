@@ -14,7 +14,8 @@ endif()
 
 add_library(aw_flags INTERFACE)
 target_include_directories(aw_flags INTERFACE ${CMAKE_SOURCE_DIR})
-target_compile_options(aw_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+target_compile_options(aw_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+  -Wno-missing-field-initializers)  # designated initializers leave the rest at their defaults on purpose
 if(AW_SANITIZE_ADDRESS)
   target_compile_options(aw_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(aw_flags INTERFACE -fsanitize=address,undefined)
