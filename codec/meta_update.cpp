@@ -1,0 +1,47 @@
+#include "codec/meta_update.h"
+
+#include "codec/plain_meta.h"
+
+namespace atlaswire::codec {
+
+std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLimits&) {
+  switch (kind) {
+    case MetaCodecKind::kPlain:
+      return std::make_unique<PlainMetaEncoder>();
+  }
+  return nullptr;
+}
+
+std::unique_ptr<MetaDecoder> make_meta_decoder(MetaCodecKind kind, const MetaLimits& limits) {
+  switch (kind) {
+    case MetaCodecKind::kPlain:
+      return std::make_unique<PlainMetaDecoder>(limits);
+  }
+  return nullptr;
+}
+
+const char* error_text(MetaError e) {
+  switch (e) {
+    case MetaError::kTruncated:
+      return "the meta update ends early";
+    case MetaError::kTrailingBytes:
+      return "octets follow the meta update's end";
+    case MetaError::kBadVersion:
+      return "not a meta update of a form this program knows";
+    case MetaError::kTooLarge:
+      return "the meta update is larger than allowed";
+    case MetaError::kIdOutOfRange:
+      return "a patch or vertex id beyond the scene's";
+    case MetaError::kBadPosition:
+      return "a vertex position outside the grid";
+    case MetaError::kBadBlock:
+      return "a block that is not landscape or not inside the atlas";
+    case MetaError::kBadPatch:
+      return "a patch with an impossible triangle count or drawing class";
+    case MetaError::kBadOrder:
+      return "a moved patch that the same update adds or removes";
+  }
+  return "unknown meta error";
+}
+
+}  // namespace atlaswire::codec
