@@ -14,6 +14,7 @@ struct Error {
   std::error_code code;
   std::string detail;
 
+  Error() = default;  ///< no error: what `Result::error()` gives for a value
   Error(std::error_code c, std::string d = {}) : code(c), detail(std::move(d)) {}
   template <class Enum>
   requires std::is_error_code_enum_v<Enum> Error(Enum e, std::string d = {})

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "base/random.h"
+#include "netsim/aqm.h"
+#include "netsim/bottleneck.h"
+#include "netsim/delay.h"
+#include "netsim/loss.h"
+#include "netsim/packet.h"
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace atlaswire::netsim {
+
+/// One direction of an emulated path: queue, then serialize, then propagate.
+/// No sockets, threads or clock: time enters as `now`, chance as `seed`, so equal inputs give equal
+/// deliveries, byte for byte, however often or seldom the caller looks. `now` must never decrease.
+/// The air's chances (loss, duplication, corruption, reordering) are drawn by packet number at arrival,
+/// so that runs which differ in rate or queue lose the same packets, and take effect behind the
+/// bottleneck: a lost packet has used its share of the rate. Jitter alone never reorders.
+class Link {
+ public:
+  /// Profile times count from `start`.
+  Link(LinkProfile profile, std::uint64_t seed, Time start);
+
+  /// A packet enters; gives its number. `ecn_capable`: marking may replace a drop by CoDel or PIE.
+  std::uint64_t send(ByteBuffer payload, Time now, bool ecn_capable = false);
+  /// The next instant at which anything inside may happen; empty: idle until the next `send`.
+  [[nodiscard]] std::optional<Time> next_event() const;
+  /// What has arrived by `now`, in order of arrival.
+  std::vector<Datagram> deliver(Time now);
+  /// Decisions made final since the last call, in the order they became so.
+  std::vector<Decision> take_decisions();
+  /// Octets waiting for the bottleneck, overhead included.
+  [[nodiscard]] std::uint64_t backlog() const { return backlog_; }
+
+ private:
+  struct Waiting {
+    Decision decision;
+    ByteBuffer payload;
+    std::uint64_t octets = 0;  ///< with overhead
+    Duration propagation{};
+    bool lost = false;
+    bool copy = false;
+    bool ecn_capable = false;
+    std::uint64_t flipped_bit = 0;
+  };
+  struct InFlight {
+    Time arrival{};
+    std::uint64_t order = 0;
+    Datagram datagram;
+  };
+
+  [[nodiscard]] const LinkParameters& parameters() const { return profile_.steps[step_].parameters; }
+  [[nodiscard]] std::optional<Time> next_internal() const;
+  [[nodiscard]] Duration head_delay(Time now) const;
+  void advance(Time to);
+  void enter_next_step();
+  void serve_head(const Service& service);
+  void propagate(Waiting packet, Time left);
+  void launch(const Waiting& packet, Decision decision);
+  void drop_front(Fate fate, Time at);
+  bool admit(Waiting& packet, Time now);
+
+  LinkProfile profile_;
+  Time start_;
+  std::size_t step_ = 0;
+  Bottleneck bottleneck_;
+  LossProcess loss_;
+  DelaySampler delay_;
+  Random air_;
+  Codel codel_;
+  Pie pie_;
+  Time next_pie_update_;
+  std::deque<Waiting> queue_;
+  std::uint64_t backlog_ = 0;
+  std::vector<InFlight> in_flight_;  ///< heap by (arrival, order)
+  std::vector<Decision> decisions_;
+  std::uint64_t packets_ = 0;
+  std::uint64_t launches_ = 0;
+  Time last_arrival_{Duration::min()};
+};
+
+}  // namespace atlaswire::netsim

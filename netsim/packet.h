@@ -1,0 +1,48 @@
+#pragma once
+
+#include "base/bytes.h"
+#include "base/time.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace atlaswire::netsim {
+
+/// What became of a packet. A duplicate is a packet of its own with the same number.
+enum class Fate : std::uint8_t {
+  kDelivered = 0,
+  kLost,       ///< by the loss model
+  kBlackout,   ///< sent while the link was down
+  kQueueFull,  ///< tail or head drop: the queue was at its bound
+  kEarlyDrop,  ///< by CoDel or PIE
+  kExpired,    ///< waited longer than the queue's time limit
+};
+/// Stable lower-case name, for logs.
+const char* fate_name(Fate fate);
+
+/// One packet's way through one direction, complete when its fate is known. Equal arrivals, profile and
+/// seed give equal decisions, byte for byte, live or in virtual time.
+struct Decision {
+  std::uint64_t packet = 0;  ///< number of the packet, counted from 0 in order of arrival
+  std::uint32_t size = 0;    ///< octets of payload
+  Time arrived{};            ///< when it was given to `send`
+  Time left_queue{};         ///< when the bottleneck had served it; equals `arrived` when dropped before
+  Time delivered{};          ///< when it reaches the far end; meaningless unless delivered
+  Fate fate = Fate::kDelivered;
+  bool corrupted = false;
+  bool duplicate = false;
+  bool marked = false;     ///< ECN congestion experienced
+  bool reordered = false;  ///< allowed to overtake
+  bool operator==(const Decision&) const = default;
+};
+
+/// A payload at the far end.
+struct Datagram {
+  std::uint64_t packet = 0;
+  Time arrival{};
+  ByteBuffer payload;
+  bool marked = false;
+};
+
+}  // namespace atlaswire::netsim
