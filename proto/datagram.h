@@ -32,6 +32,13 @@ inline constexpr std::size_t kDatagramHeader = 6;
 /// The session a datagram of ours names, so that the daemon finds it before parsing more.
 Result<SessionId> session_of(ByteView datagram);
 
+/// Times on the wire are nanoseconds since a clock's own zero, within +-kMaxWireNanos (36 years); parsers
+/// refuse others, so that sums and differences of a few of them never overflow.
+inline constexpr std::int64_t kMaxWireNanos = std::int64_t{1} << 60U;
+[[nodiscard]] constexpr bool is_wire_time(std::int64_t nanos) {
+  return nanos > -kMaxWireNanos && nanos < kMaxWireNanos;
+}
+
 /// Client to server: "I am at this address". Padded with zeros to kProbeSize, more than the answer's size.
 struct Probe {
   SessionId session{};
@@ -76,7 +83,7 @@ void encode(const Confirm& message, ByteBuffer& out);
 void encode(const SyncRequest& message, ByteBuffer& out);
 void encode(const SyncResponse& message, ByteBuffer& out);
 
-/// Each refuses a wrong type, version, size, non-zero padding and session 0.
+/// Each refuses a wrong type, version, size, non-zero padding, session 0 and times that are none.
 Result<Probe> parse_probe(ByteView datagram);
 Result<Challenge> parse_challenge(ByteView datagram);
 Result<Confirm> parse_confirm(ByteView datagram);

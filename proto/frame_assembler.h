@@ -2,6 +2,7 @@
 
 #include "base/bytes.h"
 #include "base/ids.h"
+#include "base/result.h"
 #include "base/time.h"
 #include "proto/h264_payload.h"
 #include "proto/ntp_time.h"
@@ -35,19 +36,19 @@ struct AssemblerCounts {
   std::uint64_t late = 0;        ///< their frame was given up or given out before
   std::uint64_t refused = 0;     ///< malformed payloads, no frame id, or too far ahead
   std::uint64_t frames = 0;      ///< given out
-  std::uint64_t lost = 0;        ///< frames given up for missing or broken packets
+  std::uint64_t lost = 0;        ///< frame ids given up for missing or broken packets
   std::uint64_t withheld = 0;    ///< whole frames held back while waiting for an IDR
 };
 
 /// Client: RTP packets of one stream, in any order, to whole access units in order. A gap is waited for
 /// until `reorder_wait` after the first packet beyond it; then its frame is lost, and frames are withheld
-/// until an IDR (they would decode to garbage). Memory is bounded by `max_packets` and `max_octets`.
-/// Safe on hostile packets. Deterministic.
+/// until an IDR (they would decode to garbage). Order is the sequence numbers'; frame ids label. Memory is
+/// bounded by `max_packets` and `max_octets`. Safe on hostile packets. Deterministic.
 class FrameAssembler {
  public:
   struct Settings {
     Duration reorder_wait = std::chrono::milliseconds(30);
-    std::size_t max_packets = 8192;       ///< reorder window, a power of two
+    std::size_t max_packets = 8192;       ///< reorder window, a power of two, 1024..16384
     std::size_t max_octets = 16U << 20U;  ///< held at once
   };
 
@@ -63,7 +64,7 @@ class FrameAssembler {
   /// The next frame in order, if there is one.
   std::optional<AssembledFrame> pop();
 
-  /// Something was lost or withheld and no IDR has come since: ask for one (see RefreshTimer).
+  /// Something was lost or withheld and no IDR has come since: ask for one (refresh_timer.h says when).
   [[nodiscard]] bool needs_refresh() const { return needs_refresh_; }
   /// The decoder failed: withhold frames until an IDR.
   void require_idr();
@@ -87,13 +88,18 @@ class FrameAssembler {
     return slots_[static_cast<std::size_t>(sequence) & mask_];
   }
   bool admit(std::int64_t sequence, std::uint16_t raw);
-  void start_at(std::int64_t sequence);
+  void restart_at(std::int64_t sequence);
+  bool make_room(std::size_t octets);
   void store(const RtpPacketView& packet, std::int64_t sequence, std::size_t octets, Time arrival);
   void advance();
+  void note_gap();
   void take_frame(std::int64_t last);
-  void release(std::int64_t from, std::int64_t to);
+  [[nodiscard]] bool is_one_frame(std::int64_t last) const;
+  Result<AssembledFrame> join(std::int64_t last);
+  void deliver(AssembledFrame frame);
+  void release_until(std::int64_t end);
   void give_up_gap();
-  void count_lost(std::optional<FrameId> upto);
+  void give_up_until(std::int64_t end, std::optional<FrameId> next_frame);
   void lose();
 
   Settings settings_;
@@ -102,9 +108,12 @@ class FrameAssembler {
   std::size_t held_octets_ = 0;
   SequenceUnwrapper unwrapper_;
   bool started_ = false;
+  bool opening_ = false;               ///< the first frame's start is not known yet: next_ may move back
   std::int64_t next_ = 0;              ///< first packet not given out or given up
   std::int64_t scanned_ = 0;           ///< first packet at or after next_ that is missing
   std::int64_t end_ = 0;               ///< one past the highest packet held
+  std::int64_t gap_ = 0;               ///< the gap that gap_since_ tells of
+  std::optional<Time> gap_since_;      ///< arrival of the first packet beyond it
   std::optional<std::uint16_t> far_;   ///< last sequence that was too far ahead: two in a row restart
   std::optional<FrameId> last_frame_;  ///< newest frame given out, withheld or lost
   bool gated_ = true;
@@ -112,18 +121,6 @@ class FrameAssembler {
   H264Depacketizer depacketizer_;
   std::deque<AssembledFrame> ready_;
   AssemblerCounts counts_;
-};
-
-/// When to send a PLI: at once, then again every `interval` for as long as a refresh is needed.
-class RefreshTimer {
- public:
-  /// True when a PLI should go out now. `round_trip`: repeats wait at least twice as long.
-  bool poll(bool needs_refresh, Duration round_trip, Time now);
-  /// When to ask again; nullopt when nothing is needed.
-  [[nodiscard]] std::optional<Time> next_deadline() const { return next_; }
-
- private:
-  std::optional<Time> next_;
 };
 
 }  // namespace atlaswire::proto

@@ -26,8 +26,8 @@ struct PacerVerdict {
 
 /// Server: releases datagrams at a rate instead of in bursts that routers drop. Bounded by octets and by
 /// time: a picture that would wait too long is refused whole; an IDR replaces waiting pictures that have
-/// not begun to leave. A picture that began to leave always leaves whole. Rate 0 releases nothing,
-/// kUnlimitedRate everything at once. Rates count UDP payload octets.
+/// not begun to leave. A picture that began to leave always leaves whole. Rate 0 releases nothing and
+/// keeps one picture, kUnlimitedRate releases everything at once. Rates count UDP payload octets.
 class Pacer {
  public:
   struct Settings {
@@ -54,15 +54,17 @@ class Pacer {
   [[nodiscard]] std::size_t queued_pictures() const { return queue_.size(); }
 
  private:
-  [[nodiscard]] Duration time_for(std::uint64_t octets) const;
-  [[nodiscard]] bool fits(const DatagramBatch& batch) const;
-  void retire_front();
+  [[nodiscard]] bool fits(const DatagramBatch& batch, Time now) const;
+  std::uint32_t drop_waiting();
+  void recycle(DatagramBatch&& batch);
 
   Settings settings_;
   std::deque<DatagramBatch> queue_;
   std::size_t next_in_front_ = 0;  ///< datagrams of the front picture that have left
   Bytes queued_{};
-  Time next_send_{};
+  Time next_send_ = Time::min();
+  Time last_enqueue_{};
+  DatagramBatch leaving_;  ///< holds the last datagram lent out of a picture that is done
   std::vector<DatagramBatch> spare_;
 };
 

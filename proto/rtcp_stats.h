@@ -38,7 +38,7 @@ class ReceptionStats {
   std::uint64_t expected_before_ = 0;
   std::uint64_t received_before_ = 0;
   std::uint32_t transit_ = 0;
-  std::uint32_t jitter_16_ = 0;  ///< 16 times the jitter, as A.8 keeps it
+  std::uint64_t jitter_16_ = 0;  ///< 16 times the jitter, as A.8 keeps it
   NtpTime report_time_ = 0;
   std::optional<Time> report_arrival_;
 };
