@@ -151,6 +151,8 @@ class FakeServer {
 
 /// A session and a fake server joined by a path of 10 ms each way, in virtual time.
 class World {
+  Time now_{std::chrono::seconds(100)};  // before the session, which it starts
+
  public:
   static constexpr Duration kDelay = std::chrono::milliseconds(10);
 
@@ -221,7 +223,6 @@ class World {
  private:
   void later(std::function<void()> action) { events_.emplace(now_ + kDelay, std::move(action)); }
 
-  Time now_{std::chrono::seconds(100)};
   std::multimap<Time, std::function<void()>> events_;
 };
 

@@ -185,6 +185,7 @@ TEST(Session, LosesPatienceWithASilentListener) {
 TEST(Session, SaysThatDatagramsDoNotPass) {
   World w;
   w.server.echoes_datagrams = false;
+  w.run(milliseconds(100));
   for (int i = 0; i < 30; ++i) {
     w.server.send_frame(static_cast<std::uint32_t>(i), true, 100, w.now(), [](std::size_t) { return true; });
     w.run(milliseconds(250));
