@@ -9,6 +9,7 @@ extern "C" {
 #include <algorithm>
 #include <limits>
 #include <new>
+#include <optional>
 
 namespace atlaswire::codec {
 
@@ -37,7 +38,10 @@ struct VideoDecoder::Impl {
   AvPacket packet;
   ByteBuffer padded;  // libav reads past the end
   Extent2D max_extent;
-  VideoError refusal{};  // why get_format refused, if it did
+  std::uint32_t threads = 1;
+  std::optional<VideoError> refusal;  // why get_format refused, if it did
+
+  void open();
 
   static AVPixelFormat choose_format(AVCodecContext* context, const AVPixelFormat* offered);
   Result<AvFrame> receive_last();
@@ -63,34 +67,39 @@ AVPixelFormat VideoDecoder::Impl::choose_format(AVCodecContext* context, const A
   return AV_PIX_FMT_NONE;
 }
 
-VideoDecoder::VideoDecoder(Extent2D max_extent, std::uint32_t threads) : impl_(std::make_unique<Impl>()) {
-  route_av_log();
+void VideoDecoder::Impl::open() {
   const AVCodec* codec = avcodec_find_decoder(AV_CODEC_ID_H264);
   AW_ASSERT(codec != nullptr);  // every libavcodec we build against has it
-  Impl& self = *impl_;
-  self.max_extent = max_extent;
-  self.context.reset(avcodec_alloc_context3(codec));
-  self.packet.reset(av_packet_alloc());
-  if (!self.context || !self.packet) throw std::bad_alloc();
-  AVCodecContext& context = *self.context;
-  context.opaque = &self;
-  context.get_format = &Impl::choose_format;
-  context.flags |= AV_CODEC_FLAG_LOW_DELAY;
-  context.thread_type = FF_THREAD_SLICE;
-  context.thread_count = static_cast<int>(std::clamp(threads, 1U, 16U));
-  context.err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
+  context.reset(avcodec_alloc_context3(codec));
+  if (!context) throw std::bad_alloc();
+  context->opaque = this;
+  context->get_format = &Impl::choose_format;
+  context->flags |= AV_CODEC_FLAG_LOW_DELAY;
+  context->thread_type = FF_THREAD_SLICE;
+  context->thread_count = static_cast<int>(threads);
+  context->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
   // Concealment is what counts the macroblocks that no slice brought; what it concealed is refused below.
   // libavcodec leaves it off for slice threads unless told.
-  av_opt_set(context.priv_data, "enable_er", "1", 0);
-  const int code = avcodec_open2(&context, codec, nullptr);
+  av_opt_set(context->priv_data, "enable_er", "1", 0);
+  const int code = avcodec_open2(context.get(), codec, nullptr);
   AW_ASSERT(code >= 0);
+}
+
+VideoDecoder::VideoDecoder(Extent2D max_extent, std::uint32_t threads) : impl_(std::make_unique<Impl>()) {
+  route_av_log();
+  impl_->max_extent = max_extent;
+  impl_->threads = std::clamp(threads, 1U, 16U);
+  impl_->packet.reset(av_packet_alloc());
+  if (!impl_->packet) throw std::bad_alloc();
+  impl_->open();
 }
 
 VideoDecoder::~VideoDecoder() = default;
 
+/// Starts anew: flushing alone would keep what a corrupt parameter set said about reordering.
 Result<AvFrame> VideoDecoder::Impl::give_up(VideoError why) {
-  avcodec_flush_buffers(context.get());
-  return refusal == VideoError{} ? why : refusal;
+  open();
+  return refusal.value_or(why);
 }
 
 Result<AvFrame> VideoDecoder::Impl::receive_last() {
@@ -106,7 +115,10 @@ Result<AvFrame> VideoDecoder::Impl::receive_last() {
     }
     last = std::move(frame);
   }
-  if (!last) return VideoError::kNoPicture;
+  // A picture missing before this one is concealed without any flag: libavcodec only logs the gap.
+  if (!av_complaint().empty()) return give_up(VideoError::kCorrupt);
+  if (context->has_b_frames > 0) return give_up(VideoError::kWrongFormat);
+  if (!last) return give_up(VideoError::kNoPicture);
   return last;
 }
 
@@ -114,7 +126,8 @@ Result<DecodedPicture> VideoDecoder::decode(ByteView access_unit) {
   Impl& self = *impl_;
   if (access_unit.empty()) return VideoError::kNoPicture;
   if (access_unit.size() > std::numeric_limits<int>::max() / 2) return VideoError::kTooLarge;
-  self.refusal = {};
+  self.refusal.reset();
+  clear_av_complaint();
   self.padded.assign(access_unit.begin(), access_unit.end());
   self.padded.resize(access_unit.size() + AV_INPUT_BUFFER_PADDING_SIZE);
   self.packet->data = reinterpret_cast<std::uint8_t*>(self.padded.data());

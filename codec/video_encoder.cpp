@@ -1,12 +1,14 @@
-#include "base/assert.h"
 #include "base/program.h"
 #include "codec/annex_b.h"
 #include "codec/h264_backend.h"
 #include "codec/video.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <utility>
 
 namespace atlaswire::codec {
@@ -14,6 +16,8 @@ namespace atlaswire::codec {
 namespace {
 
 constexpr const char* kSoftware = "libx264";
+constexpr std::array kPresets{"ultrafast", "superfast", "veryfast", "faster",   "fast",
+                              "medium",    "slow",      "slower",   "veryslow", "placebo"};
 
 void check(const VideoEncoderSettings& settings) {
   const Extent2D extent = settings.extent;
@@ -25,6 +29,11 @@ void check(const VideoEncoderSettings& settings) {
   }
   if (!(settings.frame_rate >= 0.1 && settings.frame_rate <= 1000)) {
     throw ProgramError(ExitCode::kUsage, "the encoder's frame rate must lie between 0.1 and 1000 a second");
+  }
+  // libx264 would complain about this one on stderr by itself.
+  if (std::find(kPresets.begin(), kPresets.end(), settings.preset) == kPresets.end()) {
+    throw ProgramError(ExitCode::kUsage, fmt::format("'{}' is no preset of x264; choose one of {}",
+                                                     settings.preset, fmt::join(kPresets, ", ")));
   }
 }
 
@@ -62,19 +71,20 @@ void VideoEncoder::Impl::open_best() {
     if (try_open("h264_nvenc", spdlog::level::debug) || try_open("h264_vaapi", spdlog::level::debug)) return;
   } else if (settings.encoder != kSoftware) {
     if (try_open(settings.encoder, spdlog::level::warn)) return;
-    spdlog::warn("falling back to video encoder {}", kSoftware);
+    spdlog::info("falling back to video encoder {}", kSoftware);
   }
   if (try_open(kSoftware, spdlog::level::warn)) return;
-  throw ProgramError(ExitCode::kInternal,
-                     fmt::format("no H.264 encoder opens with preset '{}' and {} bits a second: install a "
-                                 "libavcodec built with libx264, or change preset or bit rate",
-                                 settings.preset, settings.bit_rate.bits_per_second));
+  throw ProgramError(
+      ExitCode::kInternal,
+      fmt::format("no H.264 encoder opens for {}x{} pictures at {} bits a second: install a "
+                  "libavcodec built with libx264, or change extent or bit rate",
+                  settings.extent.width, settings.extent.height, settings.bit_rate.bits_per_second));
 }
 
 void VideoEncoder::Impl::reopen() {
   auto opened = H264Backend::open(name, settings);
   if (!opened) {
-    spdlog::warn("video encoder {} keeps its old bit rate: {}", name, opened.error().detail);
+    spdlog::warn("video encoder {} keeps its bit rate: {}", name, opened.error().detail);
     return;
   }
   backend = std::move(*opened);
