@@ -6,30 +6,87 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 namespace atlaswire::render::visibility {
 using mat4 = glm::mat4;
+using vec2 = glm::vec2;
 using vec4 = glm::vec4;
+using uvec2 = glm::uvec2;
 using uint = std::uint32_t;
+#define AW_CONST inline constexpr std::uint32_t
+#else
+#define AW_CONST const uint
 #endif
+
+/// The id of a pixel that shows nothing.
+AW_CONST kNoPatch = 0xffffffffu;
+/// Invocations of a work group of the passes over patches and chunks.
+AW_CONST kListGroup = 64u;
+/// Pixels that one invocation of the mark pass reads, side by side.
+AW_CONST kMarkRun = 8u;
+/// Side of a tile of the farthest-depth grid that chunks are tested against.
+AW_CONST kDepthTile = 8u;
 
 /// Push constants of the id pass: one view.
 struct ViewConstants {
-  mat4 clip_from_relative;  ///< projection times rotation
-  vec4 camera_high;         ///< camera position relative to the scene's origin, rounded to float
-  vec4 camera_low;          ///< what that rounding lost
+  mat4 clip_from_relative;  // projection times rotation
+  vec4 camera_high;         // camera relative to the scene's origin, rounded to float
+  vec4 camera_low;          // what that rounding lost
 };
 
-#ifdef __cplusplus
-static_assert(sizeof(ViewConstants) == 96);
-static_assert(offsetof(ViewConstants, camera_high) == 64);
-static_assert(offsetof(ViewConstants, camera_low) == 80);
+/// Push constants of the chunk test: the view, and what it tests.
+struct CullConstants {
+  ViewConstants view;
+  uvec2 extent;  // of the id buffer, pixels
+  uint candidates;
+  uint padding;
+};
 
-/// The id of a pixel that shows nothing.
-inline constexpr std::uint32_t kNoPatch = 0xffffffffU;
+/// Push constants of the level pass: the current pose.
+struct LevelConstants {
+  vec4 camera_high;
+  vec4 camera_low;
+  float pixels_per_radian;  // of the display, at its centre: half its height over tan(half its field of view)
+  uint patches;
+  uint padding0;
+  uint padding1;
+};
+
+/// A patch's corners in the position buffer, and how many triangles they make.
+struct PatchCorners {
+  uint position[5];
+  uint triangles;
+};
+
+/// A chunk that may be drawn: its box and its part of the index buffer.
+struct ChunkCandidate {
+  vec4 low;   // xyz relative to the scene's origin
+  vec4 high;
+  uint index_count;
+  uint first_index;
+  uint first_triangle;
+  uint padding;
+};
+
+/// VkDrawIndexedIndirectCommand.
+struct DrawCommand {
+  uint index_count;
+  uint instance_count;
+  uint first_index;
+  int vertex_offset;
+  uint first_instance;  // the first triangle: the fragment shader adds gl_PrimitiveID
+};
+
+#undef AW_CONST
+#ifdef __cplusplus
+static_assert(sizeof(ViewConstants) == 96 && offsetof(ViewConstants, camera_low) == 80);
+static_assert(sizeof(CullConstants) == 112 && offsetof(CullConstants, extent) == 96);
+static_assert(sizeof(LevelConstants) == 48 && offsetof(LevelConstants, pixels_per_radian) == 32);
+static_assert(sizeof(PatchCorners) == 24 && offsetof(PatchCorners, triangles) == 20);
+static_assert(sizeof(ChunkCandidate) == 48 && offsetof(ChunkCandidate, index_count) == 32);
+static_assert(sizeof(DrawCommand) == 20 && offsetof(DrawCommand, first_instance) == 16);
 }  // namespace atlaswire::render::visibility
-#else
-const uint kNoPatch = 0xffffffffu;
 #endif
 
 #endif  // ATLASWIRE_SHADERS_VISIBILITY_LAYOUT_H

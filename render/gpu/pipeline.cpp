@@ -54,13 +54,14 @@ vk::raii::Pipeline make_compute(const Device& device, const ComputeSettings& s, 
 std::vector<vk::PipelineColorBlendAttachmentState> blend_states(const GraphicsSettings& s) {
   using Factor = vk::BlendFactor;
   using Part = vk::ColorComponentFlagBits;
+  const vk::ColorComponentFlags all = Part::eR | Part::eG | Part::eB | Part::eA;
   return std::vector<vk::PipelineColorBlendAttachmentState>(
       s.colors.size(), {.blendEnable = s.blend,
                         .srcColorBlendFactor = Factor::eSrcAlpha,
                         .dstColorBlendFactor = Factor::eOneMinusSrcAlpha,
                         .srcAlphaBlendFactor = Factor::eOne,
                         .dstAlphaBlendFactor = Factor::eOneMinusSrcAlpha,
-                        .colorWriteMask = Part::eR | Part::eG | Part::eB | Part::eA});
+                        .colorWriteMask = s.write_colors ? all : vk::ColorComponentFlags{}});
 }
 
 vk::raii::Pipeline make_graphics(const Device& device, const GraphicsSettings& s, vk::PipelineLayout layout) {

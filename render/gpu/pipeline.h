@@ -47,6 +47,7 @@ struct GraphicsSettings {
   vk::CompareOp depth_compare = vk::CompareOp::eGreater;  ///< reversed-Z
   float depth_bias = 0.0F;
   float depth_bias_slope = 0.0F;
+  bool write_colors = true;
   bool blend = false;  ///< source over, straight alpha in, coverage accumulated in alpha
 };
 

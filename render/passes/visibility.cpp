@@ -1,0 +1,200 @@
+#include "render/passes/visibility.h"
+
+#include "base/assert.h"
+#include "render/gpu/barriers.h"
+#include "render/passes/visibility_frustum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace atlaswire::render {
+namespace {
+
+using visibility::DrawCommand;
+
+struct SplitPosition {
+  glm::vec4 high;
+  glm::vec4 low;
+};
+
+/// The camera relative to the scene's origin, in two floats an axis.
+SplitPosition split(const glm::dvec3& position, const glm::dvec3& origin) {
+  const glm::dvec3 relative = position - origin;
+  const glm::vec3 high(relative);
+  return {.high = glm::vec4(high, 0), .low = glm::vec4(glm::vec3(relative - glm::dvec3(high)), 0)};
+}
+
+visibility::ViewConstants view_constants(const Camera& view, const glm::dvec3& origin) {
+  const SplitPosition camera = split(view.pose.position, origin);
+  return {.clip_from_relative = reversed_projection(view) * glm::mat4(view_rotation(view.pose)),
+          .camera_high = camera.high,
+          .camera_low = camera.low};
+}
+
+/// The display's pixels along one radian at its centre: d(x)/d(angle) of x = f tan(angle) at 0, where
+/// f = (height / 2) / tan(vertical field of view / 2). [SAS] eq. 1 calls it r / f.
+double pixels_per_radian(const Camera& camera) {
+  return camera.extent.height / 2.0 / std::tan(camera.vertical_fov / 2);
+}
+
+Extent2D scaled(Extent2D extent, double scale) {
+  const auto side = [&](std::uint32_t length) {
+    return static_cast<std::uint32_t>(std::max(1L, std::lround(length * scale)));
+  };
+  return {side(extent.width), side(extent.height)};
+}
+
+vk::RenderingAttachmentInfo target(const Image& image, vk::ClearValue clear) {
+  return {.imageView = image.view(),
+          .imageLayout = image.layout(),
+          .loadOp = vk::AttachmentLoadOp::eClear,
+          .storeOp = vk::AttachmentStoreOp::eStore,
+          .clearValue = clear};
+}
+
+}  // namespace
+
+VisibilityPass::VisibilityPass(Device& device, const SceneGpu& scene, const VisibilitySettings& settings)
+    : device_(&device),
+      scene_(&scene),
+      settings_(settings),
+      geometry_(device, scene.scene()),
+      layout_(device, "visibility", visibility_bindings()),
+      sets_(device, "visibility", layout_),
+      pipelines_(device, scene, layout_),
+      sampler_(make_sampler(device, {.name = "nearest", .filter = vk::Filter::eNearest})),
+      commands_(device, {.name = "id draws",
+                         .size = settings.max_views * scene.scene().chunks.size() * sizeof(DrawCommand),
+                         .usage = vk::BufferUsageFlagBits::eIndirectBuffer,
+                         .residence = Residence::kUpload}) {
+  AW_ASSERT(settings.max_views >= 1 && settings.fov_scale >= 1 && settings.id_scale > 0);
+  sets_.write(0, 0, scene.triangle_patch());
+  sets_.write(0, 1, geometry_.marks);
+  sets_.write(0, 3, geometry_.positions);
+  sets_.write(0, 4, geometry_.corners);
+  sets_.write(0, 5, geometry_.levels);
+}
+
+void VisibilityPass::make_targets(Extent2D extent) {
+  if (ids_ != nullptr && ids_->extent() == extent) return;
+  using Usage = vk::ImageUsageFlagBits;
+  ids_ = std::make_unique<Image>(
+      *device_, ImageSettings{.name = "ids",
+                              .extent = extent,
+                              .format = kIdFormat,
+                              .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc});
+  depth_ = std::make_unique<Image>(*device_,
+                                   ImageSettings{.name = "id depth",
+                                                 .extent = extent,
+                                                 .format = kIdDepthFormat,
+                                                 .usage = Usage::eDepthStencilAttachment | Usage::eSampled});
+  sets_.write(0, 2, *ids_, sampler_);
+}
+
+void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camera& camera, Duration cover) {
+  const std::vector<Pose> poses =
+      predicted_poses(camera.pose, cover, settings_.prediction_step, settings_.max_views);
+  Camera view = enlarged(camera, settings_.fov_scale);
+  view.extent = scaled(view.extent, settings_.id_scale);
+  make_targets(view.extent);
+  stats_ = {.views = static_cast<std::uint32_t>(poses.size())};
+  compute_to_compute(commands);
+  for (std::uint32_t i = 0; i < poses.size(); ++i) {
+    view.pose = poses[i];
+    compute_to_draw(commands);
+    record_view(commands, view, i);
+    record_marks(commands);
+  }
+  record_levels(commands, camera);
+}
+
+void VisibilityPass::record_view(const vk::raii::CommandBuffer& commands, const Camera& view,
+                                 std::uint32_t index) {
+  const Scene& scene = scene_->scene();
+  const ViewVolume volume(view, scene.origin);
+  std::vector<std::uint32_t> chunks;
+  for (std::uint32_t i = 0; i < scene.chunks.size(); ++i) {
+    if (volume.may_see(scene.chunks[i].box)) chunks.push_back(i);
+  }
+  const DrawList list = list_draws(scene, chunks, true);
+  const auto first = static_cast<std::uint32_t>(index * scene.chunks.size());
+  const auto out = commands_.mapped<DrawCommand>().subspan(first);
+  std::ranges::transform(list.candidates, out.begin(), [](const visibility::ChunkCandidate& c) {
+    return DrawCommand{.index_count = c.index_count,
+                       .instance_count = 1,
+                       .first_index = c.first_index,
+                       .vertex_offset = 0,
+                       .first_instance = c.first_triangle};
+  });
+  commands_.flush();
+  stats_.chunks_in_view += static_cast<std::uint32_t>(chunks.size());
+  stats_.draws += static_cast<std::uint32_t>(list.candidates.size());
+
+  discard_image(commands, *ids_, ImageUse::kColorTarget);
+  discard_image(commands, *depth_, ImageUse::kDepthTarget);
+  const auto color = target(*ids_, vk::ClearColorValue(std::array<std::uint32_t, 4>{visibility::kNoPatch}));
+  const auto depth = target(*depth_, vk::ClearDepthStencilValue{.depth = 0.0F});
+  const Extent2D extent = ids_->extent();
+  commands.beginRendering({.renderArea = {.extent = {extent.width, extent.height}},
+                           .layerCount = 1,
+                           .colorAttachmentCount = 1,
+                           .pColorAttachments = &color,
+                           .pDepthAttachment = &depth});
+  set_viewport(commands, extent);
+  draw(commands, view_constants(view, scene.origin), list, commands_, first);
+  commands.endRendering();
+}
+
+void VisibilityPass::draw(const vk::raii::CommandBuffer& commands, const visibility::ViewConstants& view,
+                          const DrawList& list, const Buffer& indirect, std::uint32_t first_command) {
+  for (const DrawRange& range : list.ranges) {
+    const bool opaque = range.id_class == IdClass::kOpaque;
+    const Pipeline& pipeline = pipelines_.draw(range.id_class, range.double_sided);
+    if (opaque) {
+      pipeline.bind(commands, {sets_.handle()});
+      commands.bindVertexBuffers(0, geometry_.positions.handle(), vk::DeviceSize{0});
+      commands.bindIndexBuffer(geometry_.indices.handle(), 0, vk::IndexType::eUint32);
+    } else {
+      pipeline.bind(commands, {sets_.handle(), scene_->material_set(range.material)});
+      commands.bindVertexBuffers(0, scene_->vertices().handle(), vk::DeviceSize{0});
+      commands.bindIndexBuffer(scene_->indices().handle(), 0, vk::IndexType::eUint32);
+    }
+    pipeline.push(commands, view);
+    commands.drawIndexedIndirect(indirect.handle(),
+                                 (first_command + range.first_command) * sizeof(DrawCommand),
+                                 range.command_count, sizeof(DrawCommand));
+  }
+}
+
+void VisibilityPass::record_marks(const vk::raii::CommandBuffer& commands) {
+  use_image(commands, *ids_, ImageUse::kSampledInCompute);
+  fragment_to_compute(commands);
+  pipelines_.mark().bind(commands, {sets_.handle()});
+  commands.dispatch(group_count(ids_->extent().width, 8 * visibility::kMarkRun),
+                    group_count(ids_->extent().height, 8), 1);
+}
+
+void VisibilityPass::record_levels(const vk::raii::CommandBuffer& commands, const Camera& camera) {
+  const SplitPosition position = split(camera.pose.position, scene_->scene().origin);
+  const auto patches = static_cast<std::uint32_t>(scene_->scene().patches.size());
+  const visibility::LevelConstants constants{
+      .camera_high = position.high,
+      .camera_low = position.low,
+      .pixels_per_radian = static_cast<float>(pixels_per_radian(camera)),
+      .patches = patches,
+      .padding0 = 0,
+      .padding1 = 0};
+  compute_to_compute(commands);
+  pipelines_.level().bind(commands, {sets_.handle()});
+  pipelines_.level().push(commands, constants);
+  commands.dispatch(group_count(patches, visibility::kListGroup), 1, 1);
+  writes_to_host(commands);
+}
+
+std::span<const std::uint32_t> VisibilityPass::levels() const {
+  geometry_.levels.invalidate();
+  return geometry_.levels.mapped<const std::uint32_t>().first(scene_->scene().patches.size());
+}
+
+}  // namespace atlaswire::render

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "render/camera.h"
+#include "render/gpu/buffer.h"
+#include "render/gpu/descriptors.h"
+#include "render/gpu/image.h"
+#include "render/gpu/pipeline.h"
+#include "render/passes/scene_gpu.h"
+#include "render/passes/visibility_draws.h"
+#include "render/passes/visibility_geometry.h"
+#include "render/passes/visibility_pipelines.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace atlaswire::render {
+
+/// What visible sets cost and cover.
+struct VisibilitySettings {
+  double fov_scale = 1.2;       ///< >= 1; room for rotation against larger visible sets
+  double id_scale = 1.0;        ///< > 0; id pixels per display pixel along a side
+  std::uint32_t max_views = 2;  ///< >= 1
+  Duration prediction_step = std::chrono::microseconds(33'333);
+};
+
+/// What one frame's recording amounts to.
+struct VisibilityStats {
+  std::uint32_t views = 0;
+  std::uint32_t chunks_in_view = 0;  ///< inside a view's pyramid, summed over views
+  std::uint32_t draws = 0;           ///< commands, summed over views
+};
+
+/// The potentially visible set ([SAS] 3.1): id buffers of the current pose and of linearly predicted ones,
+/// each with an enlarged field of view and reversed-Z depth; patches marked in compute; and for each marked
+/// patch the size that it wants in the atlas, seen from the current pose.
+///
+/// Masked surfaces have their holes; blended ones hide nothing and are marked where they pass the depth test.
+class VisibilityPass {
+ public:
+  VisibilityPass(Device& device, const SceneGpu& scene, const VisibilitySettings& settings);
+
+  /// Records one frame. All that was recorded before must have finished on the device.
+  void record(const vk::raii::CommandBuffer& commands, const Camera& camera, Duration cover);
+
+  /// One word a patch (shaders/level_layout.h), after the recorded work has been waited for.
+  [[nodiscard]] std::span<const std::uint32_t> levels() const;
+  [[nodiscard]] const VisibilityStats& stats() const { return stats_; }
+
+  /// The last view's id buffer, in use as kSampledInCompute; kNoPatch where nothing is drawn.
+  [[nodiscard]] Image& ids() { return *ids_; }
+
+ private:
+  void make_targets(Extent2D extent);
+  void record_view(const vk::raii::CommandBuffer& commands, const Camera& view, std::uint32_t index);
+  void draw(const vk::raii::CommandBuffer& commands, const visibility::ViewConstants& view,
+            const DrawList& list, const Buffer& indirect, std::uint32_t first_command);
+  void record_marks(const vk::raii::CommandBuffer& commands);
+  void record_levels(const vk::raii::CommandBuffer& commands, const Camera& camera);
+
+  Device* device_;
+  const SceneGpu* scene_;
+  VisibilitySettings settings_;
+  VisibilityGeometry geometry_;
+  DescriptorLayout layout_;
+  DescriptorSets sets_;
+  VisibilityPipelines pipelines_;
+  vk::raii::Sampler sampler_;
+  Buffer commands_;  ///< DrawCommand, a chunk each for every view
+  std::unique_ptr<Image> ids_;
+  std::unique_ptr<Image> depth_;
+  VisibilityStats stats_;
+};
+
+}  // namespace atlaswire::render

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "render/gpu/buffer.h"
+#include "render/gpu/submit_context.h"
+#include "render/scene/scene.h"
+
+namespace atlaswire::render {
+
+/// What the visibility passes read of a scene beside SceneGpu, and what they write for each patch.
+struct VisibilityGeometry {
+  VisibilityGeometry(Device& device, const Scene& scene);
+
+  Buffer positions;  ///< Scene::positions, 3 floats each: fewer than the shading vertices
+  Buffer indices;    ///< into them, in the order of Scene::indices
+  Buffer corners;    ///< visibility::PatchCorners by patch
+  Buffer marks;      ///< a word a patch: not 0 if seen in this frame; 0 between frames
+  Buffer levels;     ///< a word a patch, for the host
+};
+
+}  // namespace atlaswire::render
