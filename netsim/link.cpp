@@ -45,11 +45,12 @@ Link::Link(LinkProfile profile, std::uint64_t seed, Time start)
   AW_ASSERT(!profile_.steps.empty());
 }
 
-std::uint64_t Link::send(ByteBuffer payload, Time now, bool ecn_capable) {
+std::uint64_t Link::send(ByteBuffer payload, Time now, FlowId flow, bool ecn_capable) {
   advance(now);
   const LinkParameters& p = parameters();
   Waiting packet;
   packet.decision.packet = packets_++;
+  packet.decision.flow = flow;
   packet.decision.size = static_cast<std::uint32_t>(payload.size());
   packet.decision.arrived = now;
   packet.decision.left_queue = now;
@@ -210,9 +211,10 @@ void Link::propagate(Waiting packet, Time left) {
 
 void Link::launch(const Waiting& packet, Decision decision) {
   decisions_.push_back(decision);
-  in_flight_.push_back({decision.delivered,
-                        launches_++,
-                        {decision.packet, decision.delivered, packet.payload, decision.marked}});
+  in_flight_.push_back(
+      {decision.delivered,
+       launches_++,
+       {decision.packet, decision.flow, decision.delivered, packet.payload, decision.marked}});
   std::push_heap(in_flight_.begin(), in_flight_.end(), kLater);
 }
 

@@ -25,8 +25,8 @@ class Link {
   /// Profile times count from `start`.
   Link(LinkProfile profile, std::uint64_t seed, Time start);
 
-  /// A packet enters; gives its number. `ecn_capable`: marking may replace a drop by CoDel or PIE.
-  std::uint64_t send(ByteBuffer payload, Time now, bool ecn_capable = false);
+  /// A packet of `flow` enters; gives its number. `ecn_capable`: marking may replace a drop by CoDel or PIE.
+  std::uint64_t send(ByteBuffer payload, Time now, FlowId flow = {}, bool ecn_capable = false);
   /// The next instant at which anything inside may happen; empty: idle until the next `send`.
   [[nodiscard]] std::optional<Time> next_event() const;
   /// What has arrived by `now`, in order of arrival.

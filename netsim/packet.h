@@ -21,10 +21,15 @@ enum class Fate : std::uint8_t {
 /// Stable lower-case name, for logs.
 const char* fate_name(Fate fate);
 
+/// A conversation through a link: a UDP peer, a TCP connection. Numbers are the sender's; the link only
+/// carries them.
+enum class FlowId : std::uint32_t {};
+
 /// One packet's way through one direction, complete when its fate is known. Equal arrivals, profile and
 /// seed give equal decisions, byte for byte, live or in virtual time.
 struct Decision {
   std::uint64_t packet = 0;  ///< number of the packet, counted from 0 in order of arrival
+  FlowId flow{};             ///< as given to `send`
   std::uint32_t size = 0;    ///< octets of payload
   Time arrived{};            ///< when it was given to `send`
   Time left_queue{};         ///< when the bottleneck had served it; equals `arrived` when dropped before
@@ -40,6 +45,7 @@ struct Decision {
 /// A payload at the far end.
 struct Datagram {
   std::uint64_t packet = 0;
+  FlowId flow{};
   Time arrival{};
   ByteBuffer payload;
   bool marked = false;

@@ -16,6 +16,9 @@ class Path {
  public:
   Path(const Profile& profile, std::uint64_t seed, Time start);
   Link& link(Direction direction) { return links_[static_cast<std::size_t>(direction)]; }
+  [[nodiscard]] const Link& link(Direction direction) const {
+    return links_[static_cast<std::size_t>(direction)];
+  }
   [[nodiscard]] std::optional<Time> next_event() const;
 
  private:

@@ -230,7 +230,7 @@ TEST(Link, EcnMarksCapablePacketsInsteadOfDropping) {
   int marked = 0;
   Time now{};
   for (int i = 0; i < 3000; ++i, now += microseconds(900)) {
-    link.send(ByteBuffer(972), now, true);
+    link.send(ByteBuffer(972), now, FlowId{}, true);
     for (const Datagram& d : link.deliver(now)) marked += d.marked ? 1 : 0;
   }
   EXPECT_GT(marked, 3);
