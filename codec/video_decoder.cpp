@@ -1,5 +1,6 @@
 #include "base/assert.h"
 #include "codec/av_support.h"
+#include "codec/gap_detector.h"
 #include "codec/video.h"
 
 extern "C" {
@@ -36,6 +37,7 @@ I420View DecodedPicture::view() const {
 struct VideoDecoder::Impl {
   AvContext context;
   AvPacket packet;
+  GapDetector gaps;
   ByteBuffer padded;  // libav reads past the end
   Extent2D max_extent;
   std::uint32_t threads = 1;
@@ -99,6 +101,7 @@ VideoDecoder::~VideoDecoder() = default;
 /// Starts anew: flushing alone would keep what a corrupt parameter set said about reordering.
 Result<AvFrame> VideoDecoder::Impl::give_up(VideoError why) {
   open();
+  gaps.reset();
   return refusal.value_or(why);
 }
 
@@ -115,8 +118,6 @@ Result<AvFrame> VideoDecoder::Impl::receive_last() {
     }
     last = std::move(frame);
   }
-  // A picture missing before this one is concealed without any flag: libavcodec only logs the gap.
-  if (!av_complaint().empty()) return give_up(VideoError::kCorrupt);
   if (context->has_b_frames > 0) return give_up(VideoError::kWrongFormat);
   if (!last) return give_up(VideoError::kNoPicture);
   return last;
@@ -127,7 +128,9 @@ Result<DecodedPicture> VideoDecoder::decode(ByteView access_unit) {
   if (access_unit.empty()) return VideoError::kNoPicture;
   if (access_unit.size() > std::numeric_limits<int>::max() / 2) return VideoError::kTooLarge;
   self.refusal.reset();
-  clear_av_complaint();
+  const GapDetector::Verdict verdict = self.gaps.inspect(access_unit);
+  if (verdict == GapDetector::Verdict::kNoReference) return VideoError::kNoPicture;
+  if (verdict == GapDetector::Verdict::kGap) return self.give_up(VideoError::kCorrupt).error();
   self.padded.assign(access_unit.begin(), access_unit.end());
   self.padded.resize(access_unit.size() + AV_INPUT_BUFFER_PADDING_SIZE);
   self.packet->data = reinterpret_cast<std::uint8_t*>(self.padded.data());

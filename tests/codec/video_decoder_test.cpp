@@ -11,11 +11,13 @@ namespace {
 constexpr Extent2D kExtent{256, 192};
 
 /// `count` pictures of one stream, the first an IDR; `interval` pictures from IDR to IDR.
-std::vector<ByteBuffer> stream(std::uint32_t count, std::uint32_t interval = 5, Extent2D extent = kExtent) {
+std::vector<ByteBuffer> stream(std::uint32_t count, std::uint32_t interval = 5, Extent2D extent = kExtent,
+                               const char* preset = "ultrafast") {
   VideoEncoderSettings settings;
   settings.extent = extent;
   settings.bit_rate = {2'000'000};
   settings.encoder = "libx264";
+  settings.preset = preset;
   settings.intra_interval = interval;
   VideoEncoder encoder(settings);
   std::vector<ByteBuffer> out;
@@ -112,12 +114,19 @@ TEST(VideoDecoder, GivesNoPictureBeforeAnIdr) {
 }
 
 TEST_P(VideoDecoderThreads, PictureAfterALostOneIsRefused) {
-  const auto pictures = stream(5);
+  const auto pictures = stream(5, 5, kExtent, GetParam() == 1 ? "ultrafast" : "superfast");
   VideoDecoder decoder(kExtent, GetParam());
   ASSERT_FALSE(refusal(decoder, pictures[0]));
   ASSERT_FALSE(refusal(decoder, pictures[1]));
-  EXPECT_TRUE(refusal(decoder, pictures[3]));
-  EXPECT_TRUE(refusal(decoder, pictures[4]));
+  EXPECT_EQ(refusal(decoder, pictures[3]), VideoError::kCorrupt);
+  EXPECT_EQ(refusal(decoder, pictures[4]), VideoError::kNoPicture);
+}
+
+TEST(VideoDecoder, FollowsLongIntervalsAcrossWraps) {
+  for (const char* preset : {"ultrafast", "superfast", "medium"}) {  // baseline and high profile
+    VideoDecoder decoder(kExtent);
+    for (const ByteBuffer& picture : stream(140, 0, kExtent, preset)) EXPECT_FALSE(refusal(decoder, picture));
+  }
 }
 
 TEST(VideoDecoder, RefusesBytesThatAreNoVideo) {
