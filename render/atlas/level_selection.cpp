@@ -86,7 +86,7 @@ BlockRequest round_level(PatchId patch, std::int32_t area, std::int32_t aspect, 
 }
 
 LevelSelector::LevelSelector(const LevelSettings& settings, std::uint32_t patch_count)
-    : settings_(settings), levels_(patch_count) {
+    : settings_(settings), gathered_(std::size_t{patch_count} + 1), levels_(patch_count) {
   const AllocatorSettings& a = settings.allocator;
   if (!(settings.target_fill > 0 && settings.target_fill <= 1) ||
       !(settings.max_oversampling >= 1 && settings.max_oversampling <= 65536) ||
@@ -110,28 +110,31 @@ const LevelStats& LevelSelector::select(std::span<const std::uint32_t> packed,
   AW_ASSERT(packed.size() == levels_.size());
   scan(packed);
   stats_ = {};
-  stats_.visible = static_cast<std::uint32_t>(visible_.size());
-  if (!visible_.empty()) choose_bias();
+  stats_.visible = static_cast<std::uint32_t>(found_);
+  if (found_ != 0) choose_bias();
   stats_.bias = static_cast<double>(step_) / kStepsPerOctave;
   assign(out);
   if (stats_.texels > target_) demote(out);
   return stats_;
 }
 
+/// Gathers without branches: which patches are visible is anything but predictable.
 void LevelSelector::scan(std::span<const std::uint32_t> packed) {
-  visible_.clear();
-  std::ranges::fill(histogram_, 0U);
-  const std::int32_t low = lowest_bin_;
-  const std::int32_t high = highest_bin(settings_.allocator);
+  std::size_t found = 0;
   const auto count = static_cast<std::uint32_t>(packed.size());
   for (std::uint32_t patch = 0; patch < count; ++patch) {
-    const std::uint32_t projection = packed[patch];
-    if (projection == 0) continue;
-    visible_.push_back({patch, projection});
-    const std::int32_t bin = std::clamp(packed_area(projection) >> 5, low, high);
-    ++histogram_[static_cast<std::size_t>(bin - low)];
+    gathered_[found] = {patch, packed[patch]};
+    found += packed[patch] != 0 ? 1 : 0;
   }
+  found_ = found;
+
   static_assert(kStep == 1 << 5);
+  std::ranges::fill(histogram_, 0U);
+  const std::int32_t high = highest_bin(settings_.allocator);
+  for (const Visible& v : visible()) {
+    const std::int32_t bin = std::clamp(packed_area(v.packed) >> 5, lowest_bin_, high);
+    ++histogram_[static_cast<std::size_t>(bin - lowest_bin_)];
+  }
 }
 
 /// Texels of all blocks at a bias, after rounding and clamping. Exact without hysteresis, because rounding
@@ -173,11 +176,11 @@ void LevelSelector::choose_bias() {
 }
 
 void LevelSelector::assign(std::vector<BlockRequest>& out) {
-  out.resize(visible_.size());
+  out.resize(found_);
   const std::int32_t cap = highest_bin(settings_.allocator) * kStep;
   std::uint64_t texels = 0;
-  for (std::size_t i = 0; i < visible_.size(); ++i) {
-    const Visible& v = visible_[i];
+  for (std::size_t i = 0; i < found_; ++i) {
+    const Visible& v = gathered_[i];
     const std::int32_t area = std::min(packed_area(v.packed), cap) - step_ * kStep;
     const std::int32_t aspect = packed_aspect(v.packed);
     const std::uint16_t before = levels_[v.patch];
@@ -196,7 +199,7 @@ void LevelSelector::assign(std::vector<BlockRequest>& out) {
 void LevelSelector::demote(std::vector<BlockRequest>& out) {
   const std::int32_t cap = highest_bin(settings_.allocator) * kStep;
   for (std::size_t i = 0; i < out.size() && stats_.texels > target_; ++i) {
-    const Visible& v = visible_[i];
+    const Visible& v = gathered_[i];
     const std::int32_t area = std::min(packed_area(v.packed), cap) - step_ * kStep;
     const auto request = round_level(out[i].patch, area, packed_aspect(v.packed), settings_.allocator);
     if (texels_of(request) >= texels_of(out[i])) continue;

@@ -2,6 +2,7 @@
 
 #include "render/atlas/allocator.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -61,6 +62,7 @@ class LevelSelector {
     std::uint32_t packed;
   };
 
+  [[nodiscard]] std::span<const Visible> visible() const { return std::span(gathered_).first(found_); }
   void scan(std::span<const std::uint32_t> packed);
   [[nodiscard]] std::uint64_t predicted(std::int32_t bias_step) const;
   void choose_bias();
@@ -75,8 +77,9 @@ class LevelSelector {
   std::int32_t margin_;                   ///< hysteresis in 256ths
   std::uint64_t target_;                  ///< texels
   std::vector<std::uint32_t> histogram_;  ///< visible patches by area, in eighths of an octave
-  std::vector<Visible> visible_;
-  std::vector<std::uint16_t> levels_;  ///< by patch: width, height, transposed; 0 = none yet
+  std::vector<Visible> gathered_;         ///< room for every patch
+  std::size_t found_ = 0;                 ///< how many of them count
+  std::vector<std::uint16_t> levels_;     ///< by patch: width, height, transposed; 0 = none yet
   bool has_bias_ = false;
   std::int32_t step_ = 0;  ///< bias in eighths
   LevelStats stats_;
