@@ -1,0 +1,165 @@
+#include "render/passes/forward.h"
+
+#include "render/gpu/barriers.h"
+#include "render/passes/frustum.h"
+#include "render/passes/tonemap.h"
+#include "render/relative_camera.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace atlaswire::render {
+namespace {
+
+using Usage = vk::ImageUsageFlagBits;
+
+gpu_layout::DrawConstants draw_constants(const RelativeCamera& camera) {
+  return {.clip_from_relative = camera.clip_from_relative,
+          .camera_high = camera.high,
+          .camera_low = camera.low,
+          .clip_from_texel = {0.0F, 0.0F},
+          .first_light = 0,
+          .light_count = 0};
+}
+
+std::vector<std::uint32_t> count_triangles(const Scene& scene) {
+  std::vector<std::uint32_t> first;
+  first.reserve(scene.patches.size());
+  std::uint32_t triangle = 0;
+  for (const Patch& patch : scene.patches) {
+    first.push_back(triangle);
+    triangle += patch.triangles;
+  }
+  return first;
+}
+
+/// A blended patch and how far it is.
+struct BlendedPatch {
+  float distance2 = 0.0F;
+  std::uint32_t patch = 0;
+  std::uint32_t chunk = 0;
+};
+
+float distance2_of(const Scene& scene, const Patch& patch, const glm::vec3& eye) {
+  glm::vec3 sum{0.0F};
+  const std::uint32_t corners = corner_count(patch.triangles);
+  for (std::uint32_t i = 0; i < corners; ++i) sum += scene.vertices[patch.vertices[i]].position;
+  const glm::vec3 away = sum / static_cast<float>(corners) - eye;
+  return glm::dot(away, away);
+}
+
+}  // namespace
+
+struct ForwardPass::Targets {
+  Image color;
+  Image depth;
+  Buffer readback;
+
+  Targets(const Device& device, Extent2D extent)
+      : color(device, {.name = "forward color",
+                       .extent = extent,
+                       .format = vk::Format::eR8G8B8A8Unorm,
+                       .usage = Usage::eColorAttachment | Usage::eTransferSrc}),
+        depth(device, {.name = "forward depth",
+                       .extent = extent,
+                       .format = vk::Format::eD32Sfloat,
+                       .usage = Usage::eDepthStencilAttachment}),
+        readback(device, {.name = "forward readback",
+                          .size = extent.area() * 4,
+                          .usage = vk::BufferUsageFlagBits::eTransferDst,
+                          .residence = Residence::kReadback}) {}
+};
+
+ForwardPass::ForwardPass(Device& device, const SceneGpu& scene)
+    : context_(device, "forward", 1),
+      scene_(&scene),
+      pipelines_(device, scene, MaterialPipelines::Target::kCamera),
+      first_triangle_(count_triangles(scene.scene())) {}
+
+ForwardPass::~ForwardPass() = default;
+
+Picture ForwardPass::render(const Camera& camera) {
+  Picture picture(camera.extent);
+  if (picture.empty()) return picture;
+  if (targets_ == nullptr || targets_->color.extent() != camera.extent) {
+    targets_ = std::make_unique<Targets>(context_.device(), camera.extent);
+  }
+  context_.run([&](const vk::raii::CommandBuffer& commands) { record(commands, camera); });
+  targets_->readback.invalidate();
+  std::memcpy(picture.rgba.data(), targets_->readback.mapped().data(), picture.rgba.size());
+  return picture;
+}
+
+void ForwardPass::record(const vk::raii::CommandBuffer& commands, const Camera& camera) {
+  Targets& t = *targets_;
+  const Scene& scene = scene_->scene();
+  const glm::vec3 sky = display_color(scene.background, scene.exposure);
+  discard_image(commands, t.color, ImageUse::kColorTarget);
+  discard_image(commands, t.depth, ImageUse::kDepthTarget);
+  const vk::RenderingAttachmentInfo color{
+      .imageView = t.color.view(),
+      .imageLayout = t.color.layout(),
+      .loadOp = vk::AttachmentLoadOp::eClear,
+      .storeOp = vk::AttachmentStoreOp::eStore,
+      .clearValue = vk::ClearColorValue(std::array{sky.x, sky.y, sky.z, 0.0F})};
+  const vk::RenderingAttachmentInfo depth{.imageView = t.depth.view(),
+                                          .imageLayout = t.depth.layout(),
+                                          .loadOp = vk::AttachmentLoadOp::eClear,
+                                          .storeOp = vk::AttachmentStoreOp::eDontCare,
+                                          .clearValue = vk::ClearDepthStencilValue{.depth = 0.0F}};
+  commands.beginRendering({.renderArea = {.extent = {camera.extent.width, camera.extent.height}},
+                           .layerCount = 1,
+                           .colorAttachmentCount = 1,
+                           .pColorAttachments = &color,
+                           .pDepthAttachment = &depth});
+  set_viewport(commands, camera.extent);
+  draw_scene(commands, camera);
+  commands.endRendering();
+
+  use_image(commands, t.color, ImageUse::kTransferSource);
+  const vk::BufferImageCopy region{
+      .imageSubresource = {.aspectMask = vk::ImageAspectFlagBits::eColor, .layerCount = 1},
+      .imageExtent = {camera.extent.width, camera.extent.height, 1}};
+  commands.copyImageToBuffer(t.color.handle(), t.color.layout(), t.readback.handle(), region);
+  writes_to_host(commands);
+}
+
+void ForwardPass::draw_scene(const vk::raii::CommandBuffer& commands, const Camera& camera) {
+  const Scene& scene = scene_->scene();
+  const RelativeCamera view = relative_camera(camera, scene.origin);
+  gpu_layout::DrawConstants constants = draw_constants(view);
+  commands.bindVertexBuffers(0, scene_->vertices().handle(), vk::DeviceSize{0});
+  commands.bindIndexBuffer(scene_->indices().handle(), 0, vk::IndexType::eUint32);
+
+  std::size_t bound = MaterialPipelines::kNone;
+  const auto draw = [&](std::size_t chunk, std::uint32_t first_triangle, std::uint32_t triangles) {
+    const std::size_t material = scene.chunks[chunk].material;
+    pipelines_.bind(commands, material, bound);
+    bound = material;
+    const auto lights = scene_->lights_of(chunk);
+    constants.first_light = lights.first;
+    constants.light_count = lights.count;
+    pipelines_.push(commands, constants);
+    commands.drawIndexed(triangles * 3, 1, first_triangle * 3, 0, 0);
+  };
+
+  std::vector<BlendedPatch> blended;
+  for (std::size_t i = 0; i < scene.chunks.size(); ++i) {
+    const Chunk& chunk = scene.chunks[i];
+    if (!may_see(view, chunk.box)) continue;
+    if (scene.materials[chunk.material].draw.alpha != PatchClass::Alpha::kBlend) {
+      draw(i, chunk.first_triangle, chunk.triangle_count);
+      continue;
+    }
+    for (std::uint32_t p = chunk.first_patch; p < chunk.first_patch + chunk.patch_count; ++p) {
+      blended.push_back(
+          {distance2_of(scene, scene.patches[p], glm::vec3{view.high}), p, static_cast<std::uint32_t>(i)});
+    }
+  }
+  std::ranges::stable_sort(blended, std::ranges::greater{}, &BlendedPatch::distance2);
+  for (const BlendedPatch& b : blended) {
+    draw(b.chunk, first_triangle_[b.patch], scene.patches[b.patch].triangles);
+  }
+}
+
+}  // namespace atlaswire::render

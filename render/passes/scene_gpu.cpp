@@ -1,0 +1,227 @@
+#include "render/passes/scene_gpu.h"
+
+#include "base/assert.h"
+#include "render/gpu/barriers.h"
+#include "render/passes/shadow_map.h"
+#include "shaders/scene_layout.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+namespace atlaswire::render {
+namespace {
+
+using Usage = vk::BufferUsageFlagBits;
+using Stage = vk::ShaderStageFlagBits;
+using Type = vk::DescriptorType;
+
+/// Of an object that outlives the use of the result.
+template <class T>
+std::span<const std::byte> bytes_of(const T& object) {
+  return std::as_bytes(std::span<const T, 1>(&object, 1));
+}
+
+/// Small and host-visible memory is fine for constants; geometry goes through a copy to the device.
+Buffer upload_small(const Device& device, const std::string& name, std::span<const std::byte> bytes,
+                    std::size_t size, vk::BufferUsageFlags usage) {
+  Buffer buffer(device, {.name = name,
+                         .size = std::max<std::size_t>(size, bytes.size()),
+                         .usage = usage,
+                         .residence = Residence::kUpload});
+  if (!bytes.empty()) std::memcpy(buffer.mapped().data(), bytes.data(), bytes.size());
+  buffer.flush();
+  return buffer;
+}
+
+Buffer upload(SubmitContext& context, const std::string& name, std::vector<std::span<const std::byte>> parts,
+              vk::BufferUsageFlags usage) {
+  std::size_t size = 0;
+  for (const auto& part : parts) size += part.size();
+  Buffer target(context.device(), {.name = name, .size = size, .usage = usage | Usage::eTransferDst});
+  if (size == 0) return target;
+  const Buffer staging(context.device(), {.name = name + " staging",
+                                          .size = size,
+                                          .usage = Usage::eTransferSrc,
+                                          .residence = Residence::kUpload});
+  std::byte* to = staging.mapped().data();
+  for (const auto& part : parts) {
+    if (!part.empty()) std::memcpy(to, part.data(), part.size());
+    to += part.size();
+  }
+  staging.flush();
+  context.run([&](const vk::raii::CommandBuffer& commands) {
+    commands.copyBuffer(staging.handle(), target.handle(), vk::BufferCopy{.size = size});
+    transfer_to_shaders(commands);
+  });
+  return target;
+}
+
+std::vector<ShadingVertex> make_fourth_corners(const Scene& scene) {
+  std::vector<ShadingVertex> made;
+  for (const Patch& patch : scene.patches) {
+    if (patch.triangles != 1) continue;
+    const ShadingVertex& a = scene.vertices[patch.vertices[0]];
+    const ShadingVertex& b = scene.vertices[patch.vertices[1]];
+    const ShadingVertex& c = scene.vertices[patch.vertices[2]];
+    const glm::vec3 first = unpack_normal(a.normal);
+    const glm::vec3 across = unpack_normal(b.normal) + unpack_normal(c.normal) - first;
+    made.push_back({.position = b.position + c.position - a.position,
+                    .normal = pack_normal(glm::dot(across, across) > 0.01F ? across : first),
+                    .tangent = b.tangent,
+                    .uv = b.uv + c.uv - a.uv});
+  }
+  return made;
+}
+
+std::vector<std::pair<PatchId, std::uint32_t>> number_fourth_corners(const Scene& scene) {
+  std::vector<std::pair<PatchId, std::uint32_t>> numbers;
+  auto vertex = static_cast<std::uint32_t>(scene.vertices.size());
+  for (std::size_t i = 0; i < scene.patches.size(); ++i) {
+    if (scene.patches[i].triangles == 1) numbers.emplace_back(static_cast<PatchId>(i), vertex++);
+  }
+  return numbers;
+}
+
+bool has_sun(const Scene& scene) {
+  return std::max({scene.sun.color.x, scene.sun.color.y, scene.sun.color.z}) > 0.0F;
+}
+
+/// Finer for wide scenes: 2048 a side up to 60 m.
+std::uint32_t shadow_side(const Scene& scene) {
+  if (!has_sun(scene)) return 1;
+  const glm::vec3 size = scene.box.high - scene.box.low;
+  return std::max({size.x, size.y, size.z}) > 60.0F ? 4096 : 2048;
+}
+
+gpu_layout::SceneConstants scene_constants(const Scene& scene, const ShadowFit& fit) {
+  gpu_layout::SceneConstants c{};
+  c.ambient_up = {scene.ambient_up, 0.0F};
+  c.ambient_down = {scene.ambient_down, 0.0F};
+  c.sun_color = {scene.sun.color, scene.exposure};
+  c.to_sun = {-glm::normalize(scene.sun.direction), static_cast<float>(shadow_side(scene))};
+  for (std::size_t i = 0; i < 3; ++i) c.shadow_row[i] = fit.rows[i];
+  c.shadow_offsets = {1.5F * fit.texel, 0.5F * fit.texel / fit.depth, 0.0F, 0.0F};
+  return c;
+}
+
+gpu_layout::MaterialConstants material_constants(const Material& m) {
+  return {.base_color = m.base_color,
+          .emissive = {m.emissive, 0.0F},
+          .factors = {m.metallic, m.roughness, m.normal_scale, m.alpha_cutoff}};
+}
+
+std::uint32_t features_of(const Material& m, const Scene& scene, const LightTable& lights) {
+  using namespace gpu_layout;
+  const auto bit = [](bool on, std::uint32_t feature) { return on ? feature : 0U; };
+  const bool emits = std::max({m.emissive.x, m.emissive.y, m.emissive.z}) > 0.0F;
+  return bit(m.base_color_texture != kNoTexture, kFeatureBaseTexture) |
+         bit(m.metallic_roughness_texture != kNoTexture, kFeatureMetallicRoughnessTexture) |
+         bit(m.normal_texture != kNoTexture, kFeatureNormalMap) | bit(emits, kFeatureEmissive) |
+         bit(emits && m.emissive_texture != kNoTexture, kFeatureEmissiveTexture) |
+         bit(m.draw.alpha == PatchClass::Alpha::kMask, kFeatureAlphaMask) |
+         bit(m.draw.alpha == PatchClass::Alpha::kBlend, kFeatureAlphaBlend) |
+         bit(m.draw.double_sided, kFeatureDoubleSided) | bit(has_sun(scene), kFeatureSun) |
+         bit(!lights.list.empty(), kFeatureLights);
+}
+
+std::vector<Binding> scene_bindings() {
+  return {{0, Type::eUniformBuffer, Stage::eVertex | Stage::eFragment},
+          {1, Type::eUniformBuffer, Stage::eFragment},
+          {2, Type::eStorageBuffer, Stage::eFragment},
+          {3, Type::eCombinedImageSampler, Stage::eFragment},
+          {4, Type::eStorageBuffer, Stage::eVertex}};
+}
+
+std::vector<Binding> material_bindings() {
+  std::vector<Binding> bindings{{0, Type::eUniformBuffer, Stage::eFragment}};
+  for (std::uint32_t i = 1; i <= 4; ++i) {
+    bindings.push_back({i, Type::eCombinedImageSampler, Stage::eFragment});
+  }
+  return bindings;
+}
+
+}  // namespace
+
+SceneGpu::SceneGpu(Device& device, std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)),
+      context_(device, "scene upload", 1),
+      fourth_corners_(make_fourth_corners(*scene_)),
+      solo_patches_(number_fourth_corners(*scene_)),
+      lights_(make_light_table(*scene_)),
+      shadow_fit_(
+          fit_shadow(scene_->vertices, scene_->sun.direction, static_cast<float>(shadow_side(*scene_)))),
+      vertices_(
+          upload(context_, "vertices",
+                 {std::as_bytes(std::span(scene_->vertices)), std::as_bytes(std::span(fourth_corners_))},
+                 Usage::eVertexBuffer | Usage::eStorageBuffer)),
+      indices_(upload(context_, "indices", {std::as_bytes(std::span(scene_->indices))},
+                      Usage::eIndexBuffer | Usage::eStorageBuffer)),
+      triangle_patch_(upload(context_, "patch of triangle",
+                             {std::as_bytes(std::span(scene_->triangle_patch))}, Usage::eStorageBuffer)),
+      constants_(upload_small(device, "scene constants", bytes_of(scene_constants(*scene_, shadow_fit_)), 0,
+                              Usage::eUniformBuffer)),
+      light_buffer_(upload_small(device, "lights", std::as_bytes(std::span(lights_.lights)),
+                                 gpu_layout::kMaxLights * sizeof(gpu_layout::LightConstants),
+                                 Usage::eUniformBuffer)),
+      light_list_(upload_small(device, "light lists", std::as_bytes(std::span(lights_.list)), 0,
+                               Usage::eStorageBuffer)),
+      textures_(context_, scene_->textures),
+      shadow_map_(device, {.name = "shadow map",
+                           .extent = {shadow_side(*scene_), shadow_side(*scene_)},
+                           .format = vk::Format::eD32Sfloat,
+                           .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment |
+                                    vk::ImageUsageFlagBits::eSampled}),
+      shadow_sampler_(make_sampler(device, {.name = "shadow sampler", .depth_compare = true})),
+      scene_layout_(device, "scene set", scene_bindings()),
+      material_layout_(device, "material set", material_bindings()),
+      scene_sets_(device, "scene set", scene_layout_),
+      material_sets_(device, "material set", material_layout_,
+                     static_cast<std::uint32_t>(scene_->materials.size())) {
+  if (lights_.dropped > 0) {
+    spdlog::warn("scene {}: {} lights are too many, the {} weakest are left out", scene_->name,
+                 scene_->lights.size(), lights_.dropped);
+  }
+  for (const Material& m : scene_->materials) features_.push_back(features_of(m, *scene_, lights_));
+  write_scene_set();
+  write_material_sets(device);
+  const bool sun = has_sun(*scene_);
+  context_.run([&](const vk::raii::CommandBuffer& commands) {
+    if (!sun) clear_shadow_map(commands, shadow_map_);
+  });
+  if (sun) render_shadow_map(context_, *this, shadow_map_);
+}
+
+std::uint32_t SceneGpu::fourth_corner(PatchId patch) const {
+  const auto found =
+      std::ranges::lower_bound(solo_patches_, patch, {}, &std::pair<PatchId, std::uint32_t>::first);
+  AW_ASSERT(found != solo_patches_.end() && found->first == patch);
+  return found->second;
+}
+
+void SceneGpu::write_scene_set() {
+  scene_sets_.write(0, 0, constants_);
+  scene_sets_.write(0, 1, light_buffer_);
+  scene_sets_.write(0, 2, light_list_);
+  scene_sets_.write(0, 3, shadow_map_, shadow_sampler_);
+  scene_sets_.write(0, 4, vertices_);
+}
+
+void SceneGpu::write_material_sets(const Device& device) {
+  for (std::size_t i = 0; i < scene_->materials.size(); ++i) {
+    const Material& m = scene_->materials[i];
+    const auto set = static_cast<std::uint32_t>(i);
+    materials_.push_back(upload_small(device, "material " + m.name, bytes_of(material_constants(m)), 0,
+                                      Usage::eUniformBuffer));
+    material_sets_.write(set, 0, materials_.back());
+    const std::int32_t textures[] = {m.base_color_texture, m.metallic_roughness_texture, m.normal_texture,
+                                     m.emissive_texture};
+    for (std::uint32_t slot = 0; slot < 4; ++slot) {
+      material_sets_.write(set, slot + 1, textures_.image(textures[slot]), textures_.sampler(textures[slot]));
+    }
+  }
+}
+
+}  // namespace atlaswire::render

@@ -1,0 +1,71 @@
+#include "render/passes/shadow_map.h"
+
+#include "render/gpu/pipeline.h"
+#include "render/passes/scene_gpu.h"
+#include "shaders/shaders.h"
+
+#include <vector>
+
+namespace atlaswire::render {
+namespace {
+
+Pipeline make_pipeline(const Device& device, const SceneGpu& scene, bool masked) {
+  GraphicsSettings settings{.name = masked ? "masked shadow casters" : "shadow casters",
+                            .vertex = shaders::shadow_vert,
+                            .layouts = {scene.scene_layout().handle(), scene.material_layout().handle()},
+                            .vertex_bindings = {{.binding = 0, .stride = sizeof(ShadingVertex)}},
+                            .vertex_attributes = {{.location = 0,
+                                                   .binding = 0,
+                                                   .format = vk::Format::eR32G32B32Sfloat,
+                                                   .offset = offsetof(ShadingVertex, position)},
+                                                  {.location = 1,
+                                                   .binding = 0,
+                                                   .format = vk::Format::eR32G32Sfloat,
+                                                   .offset = offsetof(ShadingVertex, uv)}},
+                            .depth = vk::Format::eD32Sfloat};
+  if (masked) settings.fragment = shaders::shadow_frag;
+  return {device, settings};
+}
+
+void begin_depth(const vk::raii::CommandBuffer& commands, Image& map) {
+  discard_image(commands, map, ImageUse::kDepthTarget);
+  const vk::RenderingAttachmentInfo depth{.imageView = map.view(),
+                                          .imageLayout = map.layout(),
+                                          .loadOp = vk::AttachmentLoadOp::eClear,
+                                          .storeOp = vk::AttachmentStoreOp::eStore,
+                                          .clearValue = vk::ClearDepthStencilValue{.depth = 0.0F}};
+  commands.beginRendering({.renderArea = {.extent = {map.extent().width, map.extent().height}},
+                           .layerCount = 1,
+                           .pDepthAttachment = &depth});
+}
+
+}  // namespace
+
+void clear_shadow_map(const vk::raii::CommandBuffer& commands, Image& map) {
+  begin_depth(commands, map);
+  commands.endRendering();
+  use_image(commands, map, ImageUse::kSampledInFragment);
+}
+
+void render_shadow_map(SubmitContext& context, const SceneGpu& scene, Image& map) {
+  const Pipeline solid = make_pipeline(context.device(), scene, false);
+  const Pipeline masked = make_pipeline(context.device(), scene, true);
+  const auto& materials = scene.scene().materials;
+  context.run([&](const vk::raii::CommandBuffer& commands) {
+    begin_depth(commands, map);
+    set_viewport(commands, map.extent());
+    commands.bindVertexBuffers(0, scene.vertices().handle(), vk::DeviceSize{0});
+    commands.bindIndexBuffer(scene.indices().handle(), 0, vk::IndexType::eUint32);
+    for (const Chunk& chunk : scene.scene().chunks) {
+      const auto alpha = materials[chunk.material].draw.alpha;
+      if (alpha == PatchClass::Alpha::kBlend) continue;
+      const Pipeline& pipeline = alpha == PatchClass::Alpha::kMask ? masked : solid;
+      pipeline.bind(commands, {scene.scene_set(), scene.material_set(chunk.material)});
+      commands.drawIndexed(chunk.triangle_count * 3, 1, chunk.first_triangle * 3, 0, 0);
+    }
+    commands.endRendering();
+    use_image(commands, map, ImageUse::kSampledInFragment);
+  });
+}
+
+}  // namespace atlaswire::render
