@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "render/gpu/barriers.h"
 #include "render/passes/visibility_frustum.h"
+#include "render/relative_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,23 +14,10 @@ namespace {
 
 using visibility::DrawCommand;
 
-struct SplitPosition {
-  glm::vec4 high;
-  glm::vec4 low;
-};
-
-/// The camera relative to the scene's origin, in two floats an axis.
-SplitPosition split(const glm::dvec3& position, const glm::dvec3& origin) {
-  const glm::dvec3 relative = position - origin;
-  const glm::vec3 high(relative);
-  return {.high = glm::vec4(high, 0), .low = glm::vec4(glm::vec3(relative - glm::dvec3(high)), 0)};
-}
-
 visibility::ViewConstants view_constants(const Camera& view, const glm::dvec3& origin) {
-  const SplitPosition camera = split(view.pose.position, origin);
-  return {.clip_from_relative = reversed_projection(view) * glm::mat4(view_rotation(view.pose)),
-          .camera_high = camera.high,
-          .camera_low = camera.low};
+  const RelativeCamera camera = relative_camera(view, origin);
+  return {
+      .clip_from_relative = camera.clip_from_relative, .camera_high = camera.high, .camera_low = camera.low};
 }
 
 /// The display's pixels along one radian at its centre: d(x)/d(angle) of x = f tan(angle) at 0, where
@@ -176,15 +164,14 @@ void VisibilityPass::record_marks(const vk::raii::CommandBuffer& commands) {
 }
 
 void VisibilityPass::record_levels(const vk::raii::CommandBuffer& commands, const Camera& camera) {
-  const SplitPosition position = split(camera.pose.position, scene_->scene().origin);
   const auto patches = static_cast<std::uint32_t>(scene_->scene().patches.size());
-  const visibility::LevelConstants constants{
-      .camera_high = position.high,
-      .camera_low = position.low,
-      .pixels_per_radian = static_cast<float>(pixels_per_radian(camera)),
-      .patches = patches,
-      .padding0 = 0,
-      .padding1 = 0};
+  visibility::LevelConstants constants{.camera_high = {},
+                                       .camera_low = {},
+                                       .pixels_per_radian = static_cast<float>(pixels_per_radian(camera)),
+                                       .patches = patches,
+                                       .padding0 = 0,
+                                       .padding1 = 0};
+  split(camera.pose.position - scene_->scene().origin, constants.camera_high, constants.camera_low);
   compute_to_compute(commands);
   pipelines_.level().bind(commands, {sets_.handle()});
   pipelines_.level().push(commands, constants);

@@ -8,7 +8,7 @@ namespace atlaswire::render {
 
 ViewVolume::ViewVolume(const Camera& camera, const glm::dvec3& scene_origin)
     : position_(camera.pose.position - scene_origin),
-      camera_from_scene_(glm::transpose(glm::mat3_cast(camera.pose.orientation))),
+      camera_from_scene_(glm::transpose(glm::mat3_cast(glm::normalize(camera.pose.orientation)))),
       near_(camera.near_plane) {
   const double up = std::tan(camera.vertical_fov / 2);
   tangents_ = {up * camera.extent.width / camera.extent.height, up};

@@ -1,0 +1,126 @@
+#include "render/sas/sas_method.h"
+
+#include "base/program.h"
+#include "render/gpu/barriers.h"
+
+#include <algorithm>
+
+namespace atlaswire::render {
+namespace {
+
+MethodSettings checked(MethodSettings settings) {
+  settings.allocator.atlas = settings.atlas;
+  if (!(settings.fov_scale >= 1.0 && settings.fov_scale <= 4.0) ||
+      !(settings.id_scale > 0.0 && settings.id_scale <= 4.0) || settings.max_views < 1 ||
+      settings.reshade_interval < 1 || settings.frames_in_flight < 1) {
+    throw ProgramError(ExitCode::kUsage,
+                       "sas: the field of view's scale must be in [1, 4], the id buffer's in (0, 4]; views, "
+                       "reshade interval and frames in flight at least 1");
+  }
+  return settings;
+}
+
+VisibilitySettings visibility_settings(const MethodSettings& s) {
+  return {.fov_scale = s.fov_scale,
+          .id_scale = s.id_scale,
+          .max_views = s.max_views,
+          .prediction_step = s.prediction_step};
+}
+
+LevelSettings level_settings(const MethodSettings& s) {
+  LevelSettings levels;
+  levels.allocator = s.allocator;
+  levels.max_oversampling = s.max_oversampling;
+  return levels;
+}
+
+std::vector<std::uint32_t> chunks_of_patches(const Scene& scene) {
+  std::vector<std::uint32_t> chunk_of(scene.patches.size());
+  for (std::uint32_t i = 0; i < scene.chunks.size(); ++i) {
+    const auto first = chunk_of.begin() + scene.chunks[i].first_patch;
+    std::fill(first, first + scene.chunks[i].patch_count, i);
+  }
+  return chunk_of;
+}
+
+/// Is `patch` in the list? Both are walked in ascending order.
+template <class Iterator>
+bool advance_to(Iterator& at, Iterator end, PatchId patch) {
+  while (at != end && at->patch < patch) ++at;
+  return at != end && at->patch == patch;
+}
+
+}  // namespace
+
+SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const MethodSettings& settings)
+    : settings_(checked(settings)),
+      scene_(std::move(scene)),
+      scene_gpu_(device, scene_),
+      visibility_(device, scene_gpu_, visibility_settings(settings_)),
+      selector_(level_settings(settings_), static_cast<std::uint32_t>(scene_->patches.size())),
+      allocator_(
+          make_sequential_allocator(settings_.allocator, static_cast<std::uint32_t>(scene_->patches.size()))),
+      shading_(device, scene_gpu_, settings_.atlas, settings_.frames_in_flight),
+      conversion_(device, shading_.atlas(), scene_->requirements.alpha(), settings_.frames_in_flight),
+      timer_(device, "sas timer", 2),
+      context_(device, "sas"),
+      chunk_of_patch_(chunks_of_patches(*scene_)) {}
+
+RenderedFrame SasMethod::render(const FrameRequest& request) {
+  RenderedFrame frame{.frame = request.frame};
+  const Time start = steady_now();
+  find_visible(request);
+  const Time found = steady_now();
+  const LevelStats& levels = selector_.select(visibility_.levels(), requests_);
+  const LayoutChange& change = allocator_->update(requests_, request.intra);
+  choose_stale(change, request.intra);
+  const Time placed = steady_now();
+  const std::uint32_t slot = frames_ % settings_.frames_in_flight;
+  frame.timings.visibility = found - start;
+  frame.timings.allocation = placed - found;
+  frame.shaded_texels = shade(request, slot, frame.timings);
+  frame.picture = conversion_.picture(slot);
+  frame.change = &change;
+  frame.usage = allocator_->usage();
+  frame.visible_patches = levels.visible;
+  frame.bias = levels.bias;
+  ++frames_;
+  return frame;
+}
+
+void SasMethod::find_visible(const FrameRequest& request) {
+  visibility_.record(context_.begin(), request.camera, request.cover);
+  context_.wait(context_.submit());
+}
+
+void SasMethod::choose_stale(const LayoutChange& change, bool all) {
+  stale_ = allocator_->blocks();
+  if (all || settings_.reshade_interval == 1) return;
+  auto added = change.added.begin();
+  auto moved = change.moved.begin();
+  std::erase_if(stale_, [&](const PlacedPatch& placed) {
+    const bool is_new = advance_to(added, change.added.end(), placed.patch);
+    const bool is_moved = advance_to(moved, change.moved.end(), placed.patch);
+    const std::uint32_t turn = chunk_of_patch_[value(placed.patch)] + frames_;
+    return !is_new && !is_moved && turn % settings_.reshade_interval != 0;
+  });
+}
+
+std::uint64_t SasMethod::shade(const FrameRequest& request, std::uint32_t slot, RenderTimings& timings) {
+  const Time start = steady_now();
+  const auto& commands = context_.begin();
+  timer_.reset(commands);
+  const std::uint64_t texels =
+      shading_.record(commands, stale_, request.camera.pose.position, request.intra || frames_ == 0);
+  use_image(commands, shading_.atlas(), ImageUse::kSampledInCompute);
+  timer_.begin(commands, "conversion");
+  conversion_.record(commands, slot);
+  timer_.end(commands);
+  writes_to_host(commands);
+  context_.wait(context_.submit());
+  for (const auto& [stage, duration] : timer_.collect()) timings.conversion += duration;
+  timings.shading = std::max(Duration::zero(), steady_now() - start - timings.conversion);
+  return texels;
+}
+
+}  // namespace atlaswire::render

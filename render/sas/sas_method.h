@@ -1,0 +1,59 @@
+#pragma once
+
+#include "render/atlas/level_selection.h"
+#include "render/gpu/gpu_timer.h"
+#include "render/gpu/submit_context.h"
+#include "render/method.h"
+#include "render/passes/i420_pass.h"
+#include "render/passes/scene_gpu.h"
+#include "render/passes/shading.h"
+#include "render/passes/visibility.h"
+
+#include <memory>
+#include <vector>
+
+namespace atlaswire::render {
+
+/// Shading atlas streaming ([SAS] 3): visible set, levels, atlas memory, shading into a persistent atlas,
+/// I420. Each render() waits for its two submissions: one that ends with the levels' read-back, one that ends
+/// with the picture. Equal requests in equal order give equal bytes on one device.
+///
+/// Blocks that are new or moved are shaded at once, the others every MethodSettings::reshade_interval-th
+/// frame, chunk by chunk in rotation. On intra frames everything is shaded and unused texels are cleared
+/// ([SAS] 4.2).
+class SasMethod final : public Method {
+ public:
+  SasMethod(Device& device, std::shared_ptr<const Scene> scene, const MethodSettings& settings);
+
+  [[nodiscard]] Extent2D picture_extent() const override { return conversion_.picture_extent(); }
+  RenderedFrame render(const FrameRequest& request) override;
+  [[nodiscard]] bool wants_intra() const override { return allocator_->wants_reset(); }
+  [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return allocator_->blocks(); }
+
+  /// What the last frame's visibility pass did.
+  [[nodiscard]] const VisibilityStats& visibility_stats() const { return visibility_.stats(); }
+  /// The last frame's level words, one a patch.
+  [[nodiscard]] std::span<const std::uint32_t> levels() const { return visibility_.levels(); }
+
+ private:
+  void find_visible(const FrameRequest& request);
+  void choose_stale(const LayoutChange& change, bool all);
+  std::uint64_t shade(const FrameRequest& request, std::uint32_t slot, RenderTimings& timings);
+
+  MethodSettings settings_;
+  std::shared_ptr<const Scene> scene_;
+  SceneGpu scene_gpu_;
+  VisibilityPass visibility_;
+  LevelSelector selector_;
+  std::unique_ptr<AtlasAllocator> allocator_;
+  ShadingPass shading_;
+  I420Pass conversion_;
+  GpuTimer timer_;
+  SubmitContext context_;
+  std::vector<std::uint32_t> chunk_of_patch_;
+  std::vector<BlockRequest> requests_;
+  std::vector<PlacedPatch> stale_;  ///< what this frame shades, ascending
+  std::uint32_t frames_ = 0;        ///< rendered so far; wraps
+};
+
+}  // namespace atlaswire::render
