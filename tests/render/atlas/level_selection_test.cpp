@@ -241,6 +241,32 @@ TEST(LevelSelector, HysteresisNeverCostsTheAtlas) {
   }
 }
 
+TEST(LevelSelector, TakesHysteresisBackWhenMemoryIsShort) {
+  // 40 patches shrink within their margin while 50 others grow beyond theirs.
+  std::vector<std::uint32_t> packed(90, pack_projection(64, 1));
+  std::fill(packed.begin() + 40, packed.end(), pack_projection(16, 1));
+  LevelSelector selector({.allocator = atlas_of(64), .max_oversampling = 1}, 90);
+  std::vector<BlockRequest> out;
+  EXPECT_EQ(selector.select(packed, out).texels, 40U * 64 + 50U * 16);
+  std::fill(packed.begin(), packed.begin() + 40, pack_projection(std::exp2(5.4), 1));
+  std::fill(packed.begin() + 40, packed.end(), pack_projection(std::exp2(4.9), 1));
+  const LevelStats stats = selector.select(packed, out);
+  EXPECT_EQ(stats.bias, 0);
+  EXPECT_EQ(stats.demoted, 22U);  // the first multiple of 32 texels that brings 4160 below 3481
+  EXPECT_EQ(area_of(out), 4160U - 22U * 32U);
+}
+
+TEST(LevelSelector, SearchesDownFromTheEquationWhereRoundingSaves) {
+  // Areas of 2^6.4 all round down: the equation asks for a bias, the blocks do not.
+  const std::vector<std::uint32_t> packed(50, pack_projection(std::exp2(6.4), 1));
+  LevelSelector selector({.allocator = atlas_of(64)}, 50);
+  std::vector<BlockRequest> out;
+  const LevelStats stats = selector.select(packed, out);
+  EXPECT_GT(stats.one_step_bias, 0.2);
+  EXPECT_EQ(stats.bias, 0);
+  EXPECT_EQ(stats.texels, 50U * 64);
+}
+
 TEST(LevelSelector, StandsStillUnderJitter) {
   Random random(10);
   LevelSelector selector({.allocator = atlas_of(128)}, 1000);

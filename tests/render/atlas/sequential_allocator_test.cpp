@@ -186,6 +186,42 @@ TEST(SequentialAllocator, ALastingOverloadDoesNotResetAgainAndAgain) {
   EXPECT_LE(resets, 1);
 }
 
+TEST(SequentialAllocator, GivesUpResettingWhenPackingAnewLeavesTheSameGap) {
+  // 56 of 64 texels are wanted, but five 8 x 1 leave no 4 x 4.
+  const auto allocator = make_sequential_allocator(small_atlas(8, 3, 0), 6);
+  auto visible = uniform(0, 5, 3, 0);
+  visible.push_back(request(5, 2, 2));
+  int resets = 0;
+  for (int frame = 0; frame < 20; ++frame) resets += allocator->update(visible, true).reset ? 1 : 0;
+  EXPECT_EQ(resets, 1);
+  EXPECT_EQ(allocator->blocks()[5].block.area(), 8U);
+}
+
+TEST(SequentialAllocator, ShrunkenBlocksStandStillWhileNothingChanges) {
+  const auto allocator = make_sequential_allocator(small_atlas(64, 4, 1), 100);
+  auto visible = uniform(0, 70, 4, 3);
+  for (const auto& r : uniform(70, 30, 3, 1)) visible.push_back(r);
+  for (int frame = 0; frame < 5; ++frame) allocator->update(visible, false);
+  for (int frame = 0; frame < 20; ++frame) {
+    const auto& change = allocator->update(visible, false);
+    EXPECT_TRUE(change.added.empty() && change.moved.empty() && change.removed.empty());
+  }
+}
+
+TEST(SequentialAllocator, APatchThatLosesItsBlockIsBothRemovedAndRefused) {
+  const auto settings = small_atlas(4, 2, 1);  // four smallest blocks
+  const auto allocator = make_sequential_allocator(settings, 10);
+  LayoutChecker checker(settings);
+  const auto before = uniform(0, 4, 1, 1);
+  ASSERT_EQ(checker.check(*allocator, before, allocator->update(before, false)), "");
+  std::vector<BlockRequest> after{request(0, 2, 1), request(1, 1, 1), request(2, 1, 1)};
+  for (const auto& r : uniform(4, 4, 1, 1)) after.push_back(r);
+  const auto& change = allocator->update(after, false);
+  ASSERT_EQ(checker.check(*allocator, after, change), "");
+  EXPECT_EQ(change.removed, (std::vector{PatchId{0}, PatchId{3}}));
+  EXPECT_EQ(change.refused, (std::vector{PatchId{0}, PatchId{4}, PatchId{5}}));
+}
+
 TEST(SequentialAllocator, NewMemoryGoesToTheLargestFirstAndFillsOneSuperblockPerWidth) {
   const auto allocator = make_sequential_allocator(small_atlas(64, 4, 1), 40);
   // 3 of 8 x 8 leave a 8 x 8 tail, that 2 of 8 x 2 top up in the next frame.
