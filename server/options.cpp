@@ -59,8 +59,9 @@ void add_scene_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
   auto* group = app.add_option_group("Scene and device");
   group->add_option("--scene", s.scene,
                     "Built-in scene (atrium, atrium:DETAIL) or a glTF file (.gltf, .glb)");
-  group->add_option("--device", s.device,
-                    "Part of a Vulkan device's name; the best one if not given. lavapipe renders on the CPU");
+  group->add_option(
+      "--device", s.device,
+      "auto, an index of --list-devices, or part of a Vulkan device's name; llvmpipe is the CPU");
   group->add_flag("--validation", s.validation, "Vulkan validation layer: finds faults, slows start-up");
   group->add_flag("--explain-scene", raw.explain_scene, "Print what the scene requires, and why; then exit");
   group->add_flag("--list-devices", raw.list_devices, "Print the Vulkan devices; then exit");
@@ -132,7 +133,9 @@ void add_network_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
 
 void add_report_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
   auto* group = app.add_option_group("Reports");
-  group->add_flag("--print-sdp", s.print_sdp, "Print the mirrored stream's SDP on stdout, and go on serving");
+  group->add_flag(
+      "--print-sdp", s.print_sdp,
+      "Print the mirrored stream's SDP on stdout and go on serving; mirrors to 127.0.0.1:5004 if not told");
   group->add_option("--ready-file", s.ready_file,
                     R"(Write {"port":N,"pid":N} here, atomically, once clients may connect)");
   group->add_option("--stats-interval", raw.stats_interval_s, "Seconds between statistics lines; 0: none");
@@ -213,6 +216,7 @@ void apply_network(const Raw& raw, DaemonSettings& s) {
   demand_range("--payload", s.delivery.payload_bytes, 200U, 1400U);
   demand_range("--pacing", s.delivery.pacing, 1.0, 100.0);
   if (!raw.mirror.empty()) s.mirror = parse_endpoint(raw.mirror, "--mirror");
+  if (s.print_sdp && !s.mirror) s.mirror = MirrorSettings{"127.0.0.1", 5004};
 }
 
 void apply_reports(const Raw& raw, DaemonSettings& s) {

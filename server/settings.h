@@ -61,8 +61,8 @@ struct MirrorSettings {
 /// Everything `atlasd` can be told; server/options.cpp maps options and TOML keys onto it one to one.
 struct DaemonSettings {
   std::string scene = "atrium";
-  std::string device;       ///< part of a Vulkan device's name; empty: the best there is
-  bool validation = false;  ///< Vulkan validation layer
+  std::string device = "auto";  ///< as render::DeviceSettings::select
+  bool validation = false;      ///< Vulkan validation layer
   StreamSettings stream;
   std::string listen = "127.0.0.1";
   std::uint16_t port = 7400;  ///< 0: any free one; TCP and UDP share the number

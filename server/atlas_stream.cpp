@@ -1,0 +1,101 @@
+#include "server/atlas_stream.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace atlaswire::server {
+
+namespace {
+
+codec::VideoEncoderSettings video_settings(const StreamSettings& settings, const Extent2D& picture) {
+  codec::VideoEncoderSettings video = settings.video;
+  video.extent = picture;
+  video.frame_rate = settings.max_fps;
+  return video;
+}
+
+codec::I420View view_of(const render::I420Picture& picture) {
+  return {picture.extent, picture.y, picture.u, picture.v, picture.extent.width, picture.extent.width / 2};
+}
+
+}  // namespace
+
+AtlasStream::AtlasStream(const StreamSettings& settings, std::shared_ptr<const render::Scene> scene,
+                         std::unique_ptr<render::Method> method)
+    : method_(std::move(method)),
+      tracker_(std::move(scene), settings.grid_bits),
+      schedule_({.interval = settings.video.intra_interval}),
+      video_(video_settings(settings, method_->picture_extent())),
+      meta_(codec::make_meta_encoder(codec::MetaCodecKind::kPlain, tracker_.limits(settings.render.atlas))) {}
+
+PreparedFrame AtlasStream::render(const ViewRequest& request) {
+  if (request.refresh) schedule_.ask_for_loss();
+  if (request.restart) schedule_.ask_at_once();
+  if (method_->wants_intra()) schedule_.ask_for_memory();
+  PreparedFrame prepared;
+  prepared.pose = request.pose;
+  prepared.cover = request.cover;
+  prepared.bit_rate = request.bit_rate;
+  prepared.stamps.pose_received = request.pose_received;
+  prepared.intra = schedule_.next();
+  prepared.rendered = method_->render({next_frame_, request.camera, request.cover, prepared.intra});
+  prepared.update = update_for(request, prepared.rendered);
+  prepared.rendered.change = nullptr;
+  next_frame_ = next(next_frame_);
+  return prepared;
+}
+
+codec::MetaUpdate AtlasStream::update_for(const ViewRequest& request, const render::RenderedFrame& rendered) {
+  if (request.restart || !std::exchange(told_, true)) {
+    return tracker_.restart(rendered.frame, method_->blocks());
+  }
+  return tracker_.update(rendered.frame, *rendered.change);
+}
+
+Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
+  if (prepared.bit_rate) video_.set_bit_rate(*prepared.bit_rate);
+  auto picture = video_.encode(view_of(prepared.rendered.picture), prepared.intra);
+  if (!picture) return picture.error();
+  EncodedFrame frame;
+  frame.frame = prepared.rendered.frame;
+  frame.pose = prepared.pose;
+  frame.cover = prepared.cover;
+  frame.idr = picture->idr;
+  frame.video = std::move(picture->bytes);
+  frame.meta.reserve(last_meta_bytes_ + last_meta_bytes_ / 4);
+  meta_->encode(prepared.update, frame.meta);
+  last_meta_bytes_ = frame.meta.size();
+  frame.stamps = prepared.stamps;
+  FrameReport& report = frame.report;
+  report.render = prepared.rendered.timings;
+  report.usage = prepared.rendered.usage;
+  report.visible_patches = prepared.rendered.visible_patches;
+  report.added_patches = static_cast<std::uint32_t>(prepared.update.added.size());
+  report.removed_patches = static_cast<std::uint32_t>(prepared.update.removed.size());
+  report.shaded_texels = prepared.rendered.shaded_texels;
+  report.bias = prepared.rendered.bias;
+  return frame;
+}
+
+proto::StreamDescription describe(const render::Scene& scene, const AtlasStream& stream,
+                                  const StreamSettings& settings) {
+  proto::StreamDescription d;
+  d.scene = scene.name.substr(0, 256);
+  d.picture = stream.picture_extent();
+  d.atlas = settings.render.atlas;
+  d.has_coverage = scene.requirements.alpha();
+  d.grid = stream.grid();
+  d.max_vertices = std::max(1U, static_cast<std::uint32_t>(scene.positions.size()));
+  d.max_patches = std::max(1U, static_cast<std::uint32_t>(scene.patches.size()));
+  d.frame_rate = settings.max_fps;
+  d.near_plane = render::Camera{}.near_plane;
+  const glm::vec3 background = glm::clamp(scene.background, 0.0F, 65504.0F);
+  d.background = {background.r, background.g, background.b};
+  d.alpha_mask = scene.requirements.alpha_mask;
+  d.alpha_blend = scene.requirements.alpha_blend;
+  d.double_sided = scene.requirements.double_sided;
+  return d;
+}
+
+}  // namespace atlaswire::server

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "codec/video.h"
+#include "server/encoded_frame.h"
+#include "server/intra_schedule.h"
+#include "server/replica_tracker.h"
+#include "server/settings.h"
+
+#include <memory>
+#include <vector>
+
+namespace atlaswire::server {
+
+/// One scene view as a stream of frames: a method that renders, an H.264 encoder, a meta encoder, and what
+/// the clients know. See FrameMaker for threads and order.
+class AtlasStream final : public FrameMaker {
+ public:
+  /// Throws ProgramError when the method or the encoder cannot be made.
+  AtlasStream(const StreamSettings& settings, std::shared_ptr<const render::Scene> scene,
+              std::unique_ptr<render::Method> method);
+
+  PreparedFrame render(const ViewRequest& request) override;
+  Result<EncodedFrame> encode(PreparedFrame prepared) override;
+
+  [[nodiscard]] Extent2D picture_extent() const { return method_->picture_extent(); }
+  [[nodiscard]] const PositionGrid& grid() const { return tracker_.grid(); }
+  /// SPS and PPS, Annex B; empty before the first frame. Encoding thread.
+  [[nodiscard]] const ByteBuffer& parameter_sets() const { return video_.parameter_sets(); }
+  /// The encoder that opened.
+  [[nodiscard]] const std::string& encoder_name() const { return video_.name(); }
+
+ private:
+  [[nodiscard]] codec::MetaUpdate update_for(const ViewRequest& request,
+                                             const render::RenderedFrame& rendered);
+
+  // Rendering thread.
+  std::unique_ptr<render::Method> method_;
+  ReplicaTracker tracker_;
+  IntraSchedule schedule_;
+  FrameId next_frame_{};
+  bool told_ = false;  ///< clients have been told the whole once
+  // Encoding thread.
+  codec::VideoEncoder video_;
+  std::unique_ptr<codec::MetaEncoder> meta_;
+  std::size_t last_meta_bytes_ = 0;
+};
+
+/// What clients must be told of a stream before its first frame; SSRC and codec are the session's to fill.
+proto::StreamDescription describe(const render::Scene& scene, const AtlasStream& stream,
+                                  const StreamSettings& settings);
+
+}  // namespace atlaswire::server

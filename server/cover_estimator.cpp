@@ -1,0 +1,30 @@
+#include "server/cover_estimator.h"
+
+#include <algorithm>
+
+namespace atlaswire::server {
+
+namespace {
+
+constexpr Duration::rep kWeight = 8;  ///< a new value counts one in so many
+
+Duration blend(Duration old, Duration fresh) { return old + (fresh - old) / kWeight; }
+
+}  // namespace
+
+CoverEstimator::CoverEstimator(const CoverSettings& settings, Duration nominal_interval)
+    : settings_(settings), interval_(nominal_interval) {}
+
+void CoverEstimator::on_frame(Duration processing, Duration interval) {
+  const Duration bounded = std::min(processing, settings_.most);
+  processing_ = measured_ ? blend(processing_, bounded) : bounded;
+  interval_ = blend(interval_, std::min(interval, settings_.most));
+  measured_ = true;
+}
+
+Duration CoverEstimator::cover() const {
+  if (settings_.fixed) return *settings_.fixed;
+  return std::clamp(round_trip_ + processing_ + interval_ + settings_.allowance, Duration{0}, settings_.most);
+}
+
+}  // namespace atlaswire::server

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "base/bytes.h"
+#include "base/ids.h"
+#include "base/result.h"
+#include "base/time.h"
+#include "codec/meta_update.h"
+#include "proto/messages.h"
+#include "render/method.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+namespace atlaswire::server {
+
+/// What a stream is asked for next.
+struct ViewRequest {
+  render::Camera camera;  ///< with the newest pose
+  PoseId pose{};          ///< its number at the client it came from
+  Time pose_received{};
+  Duration cover{};
+  bool refresh = false;  ///< somebody lost a picture: make an I-frame, however recent the last
+  bool restart = false;  ///< somebody knows nothing yet: an I-frame, and a meta update that tells all
+  std::optional<BitRate> bit_rate;  ///< from this frame on
+};
+
+/// A frame between rendering and encoding. `rendered.picture` borrows from the method's ring.
+struct PreparedFrame {
+  PoseId pose{};
+  Duration cover{};
+  bool intra = false;
+  render::RenderedFrame rendered;  ///< `change` is null: `update` has it
+  codec::MetaUpdate update;
+  std::optional<BitRate> bit_rate;
+  proto::StageStamps stamps;  ///< filled by whoever owns a clock
+};
+
+/// What one frame cost, for statistics.
+struct FrameReport {
+  render::RenderTimings render;
+  Duration meta{};    ///< making the update's bytes
+  Duration encode{};  ///< H.264
+  render::AtlasUsage usage;
+  std::uint32_t visible_patches = 0;
+  std::uint32_t added_patches = 0;
+  std::uint32_t removed_patches = 0;
+  std::uint64_t shaded_texels = 0;
+  double bias = 0;
+};
+
+/// A frame ready to leave, shared by every session that gets it.
+struct EncodedFrame {
+  FrameId frame{};
+  PoseId pose{};  ///< 0 for a session whose pose it is not
+  Duration cover{};
+  bool idr = false;
+  ByteBuffer video;  ///< Annex B access unit
+  ByteBuffer meta;   ///< of the stream's meta codec
+  proto::StageStamps stamps;
+  FrameReport report;
+};
+
+using FramePtr = std::shared_ptr<const EncodedFrame>;
+
+/// Makes frames in two steps that may overlap: one thread renders frame n + 1 while another encodes n.
+/// Every rendered frame must be encoded, once and in order. Before frame n is rendered, frame n - 2 must
+/// have been encoded. No clock: the caller stamps.
+class FrameMaker {
+ public:
+  virtual ~FrameMaker() = default;
+  /// Rendering thread. Throws ProgramError or vk errors when the device fails: the stream is over then.
+  virtual PreparedFrame render(const ViewRequest& request) = 0;
+  /// Encoding thread. An Error ends the stream.
+  virtual Result<EncodedFrame> encode(PreparedFrame prepared) = 0;
+};
+
+}  // namespace atlaswire::server

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "base/grid.h"
+#include "codec/meta_update.h"
+#include "render/atlas/allocator.h"
+#include "render/scene/scene.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace atlaswire::server {
+
+/// Knows what the clients of a stream know, and turns each frame's layout change into the update that keeps
+/// them level: vertices once, when a patch first needs them; patches added, moved and removed.
+class ReplicaTracker {
+ public:
+  ReplicaTracker(std::shared_ptr<const render::Scene> scene, std::uint32_t grid_bits);
+
+  /// The update for `frame`; lists ascend.
+  codec::MetaUpdate update(FrameId frame, const render::LayoutChange& change);
+  /// An update that forgets everything and tells `blocks` (every live one, ascending) from nothing: what a
+  /// new client needs. Stands in for `update` of that frame.
+  codec::MetaUpdate restart(FrameId frame, std::span<const render::PlacedPatch> blocks);
+
+  [[nodiscard]] const PositionGrid& grid() const { return grid_; }
+  /// What decoders must be prepared for.
+  [[nodiscard]] codec::MetaLimits limits(const Extent2D& atlas) const;
+
+ private:
+  void add(const render::PlacedPatch& placed, codec::MetaUpdate& update);
+  void add_vertices(codec::MetaUpdate& update);
+
+  std::shared_ptr<const render::Scene> scene_;
+  PositionGrid grid_;
+  std::vector<bool> known_;              ///< by VertexId
+  std::vector<std::uint32_t> new_ones_;  ///< of the update being made
+};
+
+/// The grid that clients of a scene share: over its bounding box, in scene coordinates.
+PositionGrid scene_grid(const render::Scene& scene, std::uint32_t bits);
+
+}  // namespace atlaswire::server

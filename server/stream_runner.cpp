@@ -1,0 +1,181 @@
+#include "server/stream_runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace atlaswire::server {
+
+namespace {
+
+constexpr std::uint32_t kMaxInEncoder = 2;
+constexpr std::uint32_t kMaxUntaken = 2;
+
+Duration interval_of(double fps) { return from_seconds(1.0 / fps); }
+
+}  // namespace
+
+StreamRunner::StreamRunner(const Settings& settings, Callbacks callbacks)
+    : settings_(settings),
+      callbacks_(std::move(callbacks)),
+      cover_(settings.cover, interval_of(settings.max_fps)),
+      encoder_([this] { encode_loop(); }),
+      renderer_([this](const std::stop_token& stop) { render_loop(stop); }) {}
+
+StreamRunner::~StreamRunner() {
+  request_stop();
+  encoder_.join();
+  renderer_.join();
+}
+
+void StreamRunner::request_stop() { renderer_.request_stop(); }
+
+void StreamRunner::set_view(const StampedPose& pose, Time received, Duration round_trip) {
+  {
+    const std::lock_guard lock(mutex_);
+    view_ = View{pose, received};
+    cover_.on_round_trip(round_trip);
+  }
+  changed_.notify_all();
+}
+
+void StreamRunner::request_refresh() {
+  const std::lock_guard lock(mutex_);
+  refresh_ = true;
+}
+
+void StreamRunner::set_paused(bool paused) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (paused_ == paused) return;
+    paused_ = paused;
+  }
+  changed_.notify_all();
+}
+
+void StreamRunner::frame_taken() {
+  {
+    const std::lock_guard lock(mutex_);
+    --untaken_;
+  }
+  changed_.notify_all();
+}
+
+void StreamRunner::fail(const std::string& reason) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(failed_, true)) return;
+  }
+  callbacks_.on_failure(reason);
+  changed_.notify_all();
+}
+
+bool StreamRunner::wait_for_turn(const std::stop_token& stop, Time earliest) {
+  std::unique_lock lock(mutex_);
+  const auto ready = [&] {
+    return failed_ || (view_ && !paused_ && in_encoder_ < kMaxInEncoder && untaken_ < kMaxUntaken);
+  };
+  while (!stop.stop_requested()) {
+    changed_.wait(lock, stop, ready);
+    if (stop.stop_requested() || failed_) return false;
+    if (steady_now() >= earliest) return true;
+    // Poses keep arriving: sleep to the frame's time whatever they say, then look again.
+    const auto until = std::chrono::steady_clock::time_point(earliest.time_since_epoch());
+    changed_.wait_until(lock, stop, until, [&] { return failed_; });
+  }
+  return false;
+}
+
+ViewRequest StreamRunner::make_request() {
+  const std::lock_guard lock(mutex_);
+  ViewRequest request;
+  request.camera = settings_.camera;
+  request.camera.pose = view_->pose.pose;
+  request.pose = view_->pose.id;
+  request.pose_received = view_->received;
+  request.cover = cover_.cover();
+  request.refresh = std::exchange(refresh_, false);
+  request.restart = std::exchange(first_, false);
+  if (request.restart) request.bit_rate = settings_.bit_rate;
+  return request;
+}
+
+void StreamRunner::render_loop(const std::stop_token& stop) {
+  try {
+    maker_ = callbacks_.make();
+    const Duration interval = interval_of(settings_.max_fps);
+    Time earliest{};
+    while (wait_for_turn(stop, earliest)) {
+      const ViewRequest request = make_request();
+      const Time start = steady_now();
+      // Late by less than an interval: keep the rhythm; by more: start a new one.
+      earliest = start - earliest < interval ? earliest + interval : start + interval;
+      PreparedFrame prepared = maker_->render(request);
+      prepared.stamps.render_start = start;
+      prepared.stamps.render_end = steady_now();
+      {
+        const std::lock_guard lock(mutex_);
+        ++in_encoder_;
+        prepared_.push_back(std::move(prepared));
+      }
+      changed_.notify_all();
+    }
+  } catch (const std::exception& e) {
+    fail(fmt::format("rendering failed: {}", e.what()));
+  }
+  std::unique_lock lock(mutex_);
+  rendering_over_ = true;
+  changed_.notify_all();
+  changed_.wait(lock, [&] { return in_encoder_ == 0; });
+  const bool unharmed = maker_ && !failed_;
+  lock.unlock();
+  if (unharmed && callbacks_.give_back) callbacks_.give_back(std::move(maker_));
+}
+
+void StreamRunner::encode_loop() {
+  // Ends when rendering has ended and all that was rendered is encoded: streams demand every frame.
+  for (;;) {
+    PreparedFrame prepared;
+    bool wanted = true;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return !prepared_.empty() || rendering_over_; });
+      if (prepared_.empty()) return;
+      prepared = std::move(prepared_.front());
+      prepared_.pop_front();
+      wanted = !failed_;
+    }
+    if (wanted) encode_one(std::move(prepared));
+    {
+      const std::lock_guard lock(mutex_);
+      --in_encoder_;
+    }
+    changed_.notify_all();
+  }
+}
+
+void StreamRunner::encode_one(PreparedFrame prepared) {
+  try {
+    const Time start = steady_now();
+    auto encoded = maker_->encode(std::move(prepared));
+    if (!encoded) return fail(fmt::format("encoding failed: {}", encoded.error().message()));
+    const Time end = steady_now();
+    encoded->stamps.encode_end = end;
+    encoded->report.encode = end - start;
+    {
+      const std::lock_guard lock(mutex_);
+      ++untaken_;
+      const auto& stamps = encoded->stamps;
+      const Duration interval = last_start_ ? stamps.render_start - *last_start_ : Duration{0};
+      last_start_ = stamps.render_start;
+      cover_.on_frame(end - stamps.pose_received, interval);
+    }
+    callbacks_.on_frame(std::make_shared<const EncodedFrame>(std::move(*encoded)));
+  } catch (const std::exception& e) {
+    fail(fmt::format("encoding failed: {}", e.what()));
+  }
+}
+
+}  // namespace atlaswire::server

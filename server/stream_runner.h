@@ -1,0 +1,93 @@
+#pragma once
+
+#include "base/time.h"
+#include "base/units.h"
+#include "render/camera.h"
+#include "server/cover_estimator.h"
+#include "server/encoded_frame.h"
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace atlaswire::server {
+
+/// Gives a stream's frames a pace and two threads: one renders frame n + 1 while the other encodes n.
+/// At most two frames are between them, and at most two encoded ones untaken, so that a slow reader slows
+/// rendering instead of filling memory. All methods but the destructor return at once.
+class StreamRunner {
+ public:
+  struct Settings {
+    double max_fps = 15;
+    CoverSettings cover;
+    render::Camera camera;            ///< its pose is replaced by the client's
+    std::optional<BitRate> bit_rate;  ///< instead of the stream's
+  };
+  struct Callbacks {
+    /// Makes the stream, or hands out a warm one; called on the rendering thread. May throw.
+    std::function<std::unique_ptr<FrameMaker>()> make;
+    /// A frame is ready; encoding thread. Answer with frame_taken() once it is dealt with.
+    std::function<void(FramePtr)> on_frame;
+    /// The stream failed and makes no more frames; a runner's thread, once at most.
+    std::function<void(std::string)> on_failure;
+    /// Gets the stream back when the runner ends unharmed; rendering thread, after the last frame.
+    std::function<void(std::unique_ptr<FrameMaker>)> give_back;
+  };
+
+  StreamRunner(const Settings& settings, Callbacks callbacks);
+  /// Stops and joins: waits for the frames in work.
+  ~StreamRunner();
+  StreamRunner(const StreamRunner&) = delete;
+  StreamRunner& operator=(const StreamRunner&) = delete;
+
+  /// The newest pose; without one nothing is rendered.
+  void set_view(const StampedPose& pose, Time received, Duration round_trip);
+  void request_refresh();
+  /// Frames stop being started while paused.
+  void set_paused(bool paused);
+  void frame_taken();
+  /// Asks both threads to end after the frames in work; the destructor waits for it.
+  void request_stop();
+
+ private:
+  struct View {
+    StampedPose pose;
+    Time received{};
+  };
+
+  void render_loop(const std::stop_token& stop);
+  void encode_loop();
+  bool wait_for_turn(const std::stop_token& stop, Time earliest);
+  ViewRequest make_request();
+  void encode_one(PreparedFrame prepared);
+  void fail(const std::string& reason);
+
+  Settings settings_;
+  Callbacks callbacks_;
+  std::unique_ptr<FrameMaker> maker_;  ///< set by the rendering thread before the first hand-over
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<View> view_;
+  bool paused_ = false;
+  bool refresh_ = false;
+  bool first_ = true;
+  bool failed_ = false;
+  bool rendering_over_ = false;
+  std::uint32_t in_encoder_ = 0;  ///< rendered and not yet encoded
+  std::uint32_t untaken_ = 0;     ///< encoded and not yet taken
+  std::deque<PreparedFrame> prepared_;
+  CoverEstimator cover_;
+  std::optional<Time> last_start_;
+
+  std::jthread encoder_;
+  std::jthread renderer_;
+};
+
+}  // namespace atlaswire::server
