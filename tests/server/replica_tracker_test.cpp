@@ -1,0 +1,97 @@
+#include "server/replica_tracker.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace atlaswire::server {
+namespace {
+
+using ::testing::ElementsAre;
+
+/// Two patches that share an edge (vertices 1 and 2), far from the origin.
+std::shared_ptr<const render::Scene> two_patches() {
+  auto scene = std::make_shared<render::Scene>();
+  scene->origin = {1e6, 0, 0};
+  scene->box = {{-1, -1, 0}, {1, 1, 0}};
+  scene->positions = {{-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {1, 1, 0}};
+  scene->materials.resize(2);
+  scene->materials[1].draw = {PatchClass::Alpha::kMask, true};
+  render::Patch a;
+  a.positions = {VertexId{0}, VertexId{1}, VertexId{2}, VertexId{2}, VertexId{2}};
+  render::Patch b = a;
+  b.positions = {VertexId{2}, VertexId{1}, VertexId{3}, VertexId{3}, VertexId{3}};
+  b.material = 1;
+  scene->patches = {a, b};
+  return scene;
+}
+
+std::vector<std::uint32_t> ids(const std::vector<codec::NewVertex>& vertices) {
+  std::vector<std::uint32_t> out;
+  for (const auto& vertex : vertices) out.push_back(value(vertex.id));
+  return out;
+}
+
+constexpr Block kBlock{0, 0, 3, 3, false};
+
+TEST(ReplicaTracker, SendsEachVertexOnce) {
+  ReplicaTracker tracker(two_patches(), 16);
+  render::LayoutChange change;
+  change.added = {{PatchId{1}, kBlock}};
+  const auto first = tracker.update(FrameId{0}, change);
+  EXPECT_THAT(ids(first.vertices), ElementsAre(1, 2, 3));
+  EXPECT_FALSE(first.reset);
+  EXPECT_EQ(first.added[0].draw, (PatchClass{PatchClass::Alpha::kMask, true}));
+  change.added = {{PatchId{0}, kBlock}};
+  EXPECT_THAT(ids(tracker.update(FrameId{1}, change).vertices), ElementsAre(0));
+}
+
+TEST(ReplicaTracker, VerticesStayKnownAfterTheirPatchIsGone) {
+  ReplicaTracker tracker(two_patches(), 16);
+  render::LayoutChange change;
+  change.added = {{PatchId{0}, kBlock}};
+  tracker.update(FrameId{0}, change);
+  render::LayoutChange gone;
+  gone.removed = {PatchId{0}};
+  EXPECT_THAT(tracker.update(FrameId{1}, gone).removed, ElementsAre(PatchId{0}));
+  EXPECT_TRUE(tracker.update(FrameId{2}, change).vertices.empty());
+}
+
+TEST(ReplicaTracker, RestartTellsEverythingAgain) {
+  ReplicaTracker tracker(two_patches(), 16);
+  render::LayoutChange change;
+  change.added = {{PatchId{0}, kBlock}, {PatchId{1}, kBlock}};
+  tracker.update(FrameId{0}, change);
+  const std::vector<render::PlacedPatch> blocks{{PatchId{1}, kBlock}};
+  const auto all = tracker.restart(FrameId{1}, blocks);
+  EXPECT_TRUE(all.reset);
+  ASSERT_EQ(all.added.size(), 1U);
+  EXPECT_THAT(ids(all.vertices), ElementsAre(1, 2, 3));
+  change.added = {{PatchId{0}, kBlock}};
+  EXPECT_THAT(ids(tracker.update(FrameId{2}, change).vertices), ElementsAre(0)) << "the client forgot it";
+}
+
+TEST(ReplicaTracker, PositionsAreSceneCoordinatesWithinTheGridsError) {
+  const auto scene = two_patches();
+  ReplicaTracker tracker(scene, 12);
+  render::LayoutChange change;
+  change.added = {{PatchId{0}, kBlock}, {PatchId{1}, kBlock}};
+  for (const auto& vertex : tracker.update(FrameId{0}, change).vertices) {
+    const glm::dvec3 exact = scene->origin + glm::dvec3(scene->positions[value(vertex.id)]);
+    EXPECT_LE(glm::length(tracker.grid().position(vertex.position) - exact),
+              tracker.grid().max_error() * 1.0001);
+  }
+}
+
+TEST(ReplicaTracker, LimitsCoverTheScene) {
+  const ReplicaTracker tracker(two_patches(), 14);
+  const auto limits = tracker.limits({256, 128});
+  EXPECT_EQ(limits.max_vertices, 4U);
+  EXPECT_EQ(limits.max_patches, 2U);
+  EXPECT_EQ(limits.grid_bits, 14U);
+  EXPECT_EQ(limits.atlas, (Extent2D{256, 128}));
+}
+
+}  // namespace
+}  // namespace atlaswire::server

@@ -1,0 +1,92 @@
+#include "server/client_camera.h"
+#include "server/cover_estimator.h"
+#include "server/intra_schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace atlaswire::server {
+namespace {
+
+/// 'I' and 'P' of the next `frames` frames.
+std::string frames_of(IntraSchedule& schedule, int frames) {
+  std::string out;
+  for (int i = 0; i < frames; ++i) out += schedule.next() ? 'I' : 'P';
+  return out;
+}
+
+TEST(IntraSchedule, RepeatsEveryInterval) {
+  IntraSchedule schedule({.interval = 5});
+  EXPECT_EQ(frames_of(schedule, 12), "IPPPPIPPPPIP");
+}
+
+TEST(IntraSchedule, IntervalZeroMakesOnlyTheFirst) {
+  IntraSchedule schedule({.interval = 0});
+  EXPECT_EQ(frames_of(schedule, 8), "IPPPPPPP");
+}
+
+TEST(IntraSchedule, ALossRestartsTheInterval) {
+  IntraSchedule schedule({.interval = 5});
+  EXPECT_EQ(frames_of(schedule, 3), "IPP");
+  schedule.ask_for_loss();
+  EXPECT_EQ(frames_of(schedule, 6), "IPPPPI");
+}
+
+TEST(IntraSchedule, ManyLossesCannotMakeEveryFrameIntra) {
+  IntraSchedule schedule({.interval = 0, .loss_spacing = 3});
+  std::string out;
+  for (int i = 0; i < 9; ++i) {
+    schedule.ask_for_loss();
+    out += schedule.next() ? 'I' : 'P';
+  }
+  EXPECT_EQ(out, "IPPIPPIPP");
+}
+
+TEST(IntraSchedule, MemoryWaitsLonger) {
+  IntraSchedule schedule({.interval = 0, .loss_spacing = 1, .memory_spacing = 4});
+  EXPECT_EQ(frames_of(schedule, 2), "IP");
+  schedule.ask_for_memory();
+  EXPECT_EQ(frames_of(schedule, 4), "PPIP");
+}
+
+TEST(IntraSchedule, ANewcomerNeverWaits) {
+  IntraSchedule schedule({.interval = 0});
+  EXPECT_EQ(frames_of(schedule, 1), "I");
+  schedule.ask_at_once();
+  EXPECT_EQ(frames_of(schedule, 2), "IP");
+}
+
+TEST(CoverEstimator, SumsWhatIsMeasured) {
+  CoverEstimator cover({.fixed = {}, .allowance = 10ms, .most = 500ms}, 50ms);
+  EXPECT_EQ(cover.cover(), Duration{60ms}) << "nothing measured yet";
+  cover.on_round_trip(30ms);
+  for (int i = 0; i < 200; ++i) cover.on_frame(80ms, 100ms);
+  EXPECT_NEAR(to_ms(cover.cover()), 30 + 80 + 100 + 10, 0.1);
+}
+
+TEST(CoverEstimator, OneSlowFrameCountsAnEighth) {
+  CoverEstimator cover({.fixed = {}, .allowance = 0ms, .most = 500ms}, 50ms);
+  for (int i = 0; i < 10; ++i) cover.on_frame(40ms, 50ms);
+  cover.on_frame(120ms, 50ms);
+  EXPECT_NEAR(to_ms(cover.cover()), 50 + 40 + 10, 0.1);
+}
+
+TEST(CoverEstimator, StaysWithinItsBounds) {
+  CoverEstimator cover({.fixed = {}, .allowance = 10ms, .most = 500ms}, 50ms);
+  cover.on_round_trip(from_seconds(60));
+  EXPECT_EQ(cover.cover(), Duration{500ms});
+  CoverEstimator fixed({.fixed = Duration{25ms}, .allowance = 10ms, .most = 500ms}, 50ms);
+  fixed.on_round_trip(from_seconds(60));
+  EXPECT_EQ(fixed.cover(), Duration{25ms});
+}
+
+TEST(ClientCamera, KeepsAspectAndBoundsSides) {
+  EXPECT_EQ(client_camera({960, 540}, 1.0, 0.1).extent, (Extent2D{960, 540}));
+  EXPECT_EQ(client_camera({16384, 8192}, 1.0, 0.1).extent, (Extent2D{4096, 2048}));
+  EXPECT_EQ(client_camera({16384, 1}, 1.0, 0.1).extent, (Extent2D{4096, 1}));
+  EXPECT_EQ(client_camera({960, 540}, 1.25, 0.1).vertical_fov, 1.25);
+}
+
+}  // namespace
+}  // namespace atlaswire::server
