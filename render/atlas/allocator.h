@@ -31,7 +31,7 @@ struct LayoutChange {
   bool reset = false;  ///< every block was placed anew; the lists still name only real differences
   std::vector<PlacedPatch> added;
   std::vector<PlacedPatch> moved;
-  std::vector<PatchId> removed;
+  std::vector<PatchId> removed;  ///< hidden, or refused: they held a block
   std::vector<PatchId> refused;  ///< visible, but the atlas was full: they hold no block
 };
 
@@ -64,7 +64,8 @@ class AtlasAllocator {
   /// Every live block, ascending by patch.
   [[nodiscard]] virtual std::vector<PlacedPatch> blocks() const = 0;
   [[nodiscard]] virtual AtlasUsage usage() const = 0;
-  /// The next I-frame should be early: memory is above the high-water mark or a patch was refused.
+  /// The next I-frame should be early: memory is above the high-water mark, or a patch was refused or got
+  /// less than it wanted, and a reset would help.
   [[nodiscard]] virtual bool wants_reset() const = 0;
 };
 

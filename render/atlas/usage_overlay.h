@@ -1,0 +1,41 @@
+#pragma once
+
+#include "render/atlas/allocator.h"
+#include "render/image/picture.h"
+
+#include <cstdint>
+#include <map>
+
+namespace atlaswire::render {
+
+/// Draws an atlas's memory, for people and reports: which blocks lie where, and since when.
+/// Texels outside blocks are dark; block edges are darker than their insides, and superblocks are outlined.
+class UsageOverlay {
+ public:
+  UsageOverlay(Extent2D atlas, std::uint32_t superblock_log2)
+      : atlas_(atlas), superblock_log2_(superblock_log2) {}
+
+  /// Follows one frame; every frame's change must come, in order.
+  void observe(const LayoutChange& change);
+
+  /// Hue by area: red for the smallest blocks, then yellow, green and blue for the largest.
+  [[nodiscard]] Picture by_level() const;
+  /// White for blocks placed in the newest frame, cooling through red to blue after `old_frames` frames.
+  [[nodiscard]] Picture by_age(std::uint32_t old_frames = 30) const;
+  /// Mean frames since each texel's block was placed: temporal coherence in one number; 0 if empty.
+  [[nodiscard]] double mean_age() const;
+
+ private:
+  struct Placed {
+    Block block;
+    std::uint64_t since;  ///< frame, counted by observe
+  };
+  [[nodiscard]] Picture empty_atlas() const;
+
+  Extent2D atlas_;
+  std::uint32_t superblock_log2_;
+  std::uint64_t frame_ = 0;
+  std::map<PatchId, Placed> placed_;
+};
+
+}  // namespace atlaswire::render
