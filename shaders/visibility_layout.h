@@ -25,8 +25,10 @@ AW_CONST kNoPatch = 0xffffffffu;
 AW_CONST kListGroup = 64u;
 /// Pixels that one invocation of the mark pass reads, side by side.
 AW_CONST kMarkRun = 8u;
-/// Side of a tile of the farthest-depth grid that chunks are tested against.
-AW_CONST kDepthTile = 8u;
+/// The grid of farthest depths that chunks are tested against: a fine tile's side in pixels, and a coarse
+/// tile's in fine tiles. Fine tiles come first in the buffer, row by row, then coarse ones.
+AW_CONST kFineTile = 8u;
+AW_CONST kCoarseTile = 8u;
 
 /// Push constants of the id pass: one view.
 struct ViewConstants {
@@ -39,7 +41,14 @@ struct ViewConstants {
 struct CullConstants {
   ViewConstants view;
   uvec2 extent;  // of the id buffer, pixels
-  uint candidates;
+  uint first;    // candidate of this view
+  uint count;
+};
+
+/// Push constants of the passes that make the grid.
+struct GridConstants {
+  uvec2 extent;  // of the id buffer, pixels
+  uint coarse;   // 1: make the coarse tiles from the fine ones
   uint padding;
 };
 
@@ -82,6 +91,7 @@ struct DrawCommand {
 #ifdef __cplusplus
 static_assert(sizeof(ViewConstants) == 96 && offsetof(ViewConstants, camera_low) == 80);
 static_assert(sizeof(CullConstants) == 112 && offsetof(CullConstants, extent) == 96);
+static_assert(sizeof(GridConstants) == 16 && offsetof(GridConstants, coarse) == 8);
 static_assert(sizeof(LevelConstants) == 48 && offsetof(LevelConstants, pixels_per_radian) == 32);
 static_assert(sizeof(PatchCorners) == 24 && offsetof(PatchCorners, triangles) == 20);
 static_assert(sizeof(ChunkCandidate) == 48 && offsetof(ChunkCandidate, index_count) == 32);

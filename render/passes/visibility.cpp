@@ -33,12 +33,20 @@ Extent2D scaled(Extent2D extent, double scale) {
   return {side(extent.width), side(extent.height)};
 }
 
-vk::RenderingAttachmentInfo target(const Image& image, vk::ClearValue clear) {
+vk::RenderingAttachmentInfo target(const Image& image, bool clear, vk::ClearValue value) {
   return {.imageView = image.view(),
           .imageLayout = image.layout(),
-          .loadOp = vk::AttachmentLoadOp::eClear,
+          .loadOp = clear ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad,
           .storeOp = vk::AttachmentStoreOp::eStore,
-          .clearValue = clear};
+          .clearValue = value};
+}
+
+DrawCommand unconditional(const visibility::ChunkCandidate& chunk) {
+  return {.index_count = chunk.index_count,
+          .instance_count = 1,
+          .first_index = chunk.first_index,
+          .vertex_offset = 0,
+          .first_instance = chunk.first_triangle};
 }
 
 }  // namespace
@@ -56,6 +64,9 @@ VisibilityPass::VisibilityPass(Device& device, const SceneGpu& scene, const Visi
                          .size = settings.max_views * scene.scene().chunks.size() * sizeof(DrawCommand),
                          .usage = vk::BufferUsageFlagBits::eIndirectBuffer,
                          .residence = Residence::kUpload}) {
+  if (settings.occlusion) {
+    occlusion_.emplace(device, static_cast<std::uint32_t>(settings.max_views * scene.scene().chunks.size()));
+  }
   AW_ASSERT(settings.max_views >= 1 && settings.fov_scale >= 1 && settings.id_scale > 0);
   sets_.write(0, 0, scene.triangle_patch());
   sets_.write(0, 1, geometry_.marks);
@@ -78,6 +89,21 @@ void VisibilityPass::make_targets(Extent2D extent) {
                                                  .format = kIdDepthFormat,
                                                  .usage = Usage::eDepthStencilAttachment | Usage::eSampled});
   sets_.write(0, 2, *ids_, sampler_);
+  if (occlusion_) occlusion_->set_depth(*depth_);
+}
+
+void VisibilityPass::find_known_chunks() {
+  const Scene& scene = scene_->scene();
+  const auto words = levels();
+  known_.assign(scene.chunks.size(), true);
+  if (!occlusion_) return;
+  for (std::size_t i = 0; i < scene.chunks.size(); ++i) {
+    const Chunk& chunk = scene.chunks[i];
+    const auto seen = words.subspan(chunk.first_patch, chunk.patch_count);
+    // Blended chunks are drawn last and hide nothing: always tested.
+    known_[i] = id_class(scene.materials[chunk.material]) != IdClass::kBlended &&
+                std::ranges::any_of(seen, [](std::uint32_t word) { return word != 0; });
+  }
 }
 
 void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camera& camera, Duration cover) {
@@ -87,6 +113,7 @@ void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camer
   view.extent = scaled(view.extent, settings_.id_scale);
   make_targets(view.extent);
   stats_ = {.views = static_cast<std::uint32_t>(poses.size())};
+  find_known_chunks();
   compute_to_compute(commands);
   for (std::uint32_t i = 0; i < poses.size(); ++i) {
     view.pose = poses[i];
@@ -101,28 +128,37 @@ void VisibilityPass::record_view(const vk::raii::CommandBuffer& commands, const 
                                  std::uint32_t index) {
   const Scene& scene = scene_->scene();
   const ViewVolume volume(view, scene.origin);
-  std::vector<std::uint32_t> chunks;
+  std::vector<std::uint32_t> known;
+  std::vector<std::uint32_t> others;
   for (std::uint32_t i = 0; i < scene.chunks.size(); ++i) {
-    if (volume.may_see(scene.chunks[i].box)) chunks.push_back(i);
+    if (volume.may_see(scene.chunks[i].box)) (known_[i] ? known : others).push_back(i);
   }
-  const DrawList list = list_draws(scene, chunks, true);
-  const auto first = static_cast<std::uint32_t>(index * scene.chunks.size());
-  const auto out = commands_.mapped<DrawCommand>().subspan(first);
-  std::ranges::transform(list.candidates, out.begin(), [](const visibility::ChunkCandidate& c) {
-    return DrawCommand{.index_count = c.index_count,
-                       .instance_count = 1,
-                       .first_index = c.first_index,
-                       .vertex_offset = 0,
-                       .first_instance = c.first_triangle};
-  });
-  commands_.flush();
-  stats_.chunks_in_view += static_cast<std::uint32_t>(chunks.size());
-  stats_.draws += static_cast<std::uint32_t>(list.candidates.size());
+  stats_.chunks_in_view += static_cast<std::uint32_t>(known.size() + others.size());
+  stats_.chunks_tested += static_cast<std::uint32_t>(others.size());
 
+  const visibility::ViewConstants constants = view_constants(view, scene.origin);
+  const auto first = static_cast<std::uint32_t>(index * scene.chunks.size());
+  const DrawList sure = list_draws(scene, known, true);
+  std::ranges::transform(sure.candidates, commands_.mapped<DrawCommand>().begin() + first, unconditional);
+  commands_.flush();
   discard_image(commands, *ids_, ImageUse::kColorTarget);
   discard_image(commands, *depth_, ImageUse::kDepthTarget);
-  const auto color = target(*ids_, vk::ClearColorValue(std::array<std::uint32_t, 4>{visibility::kNoPatch}));
-  const auto depth = target(*depth_, vk::ClearDepthStencilValue{.depth = 0.0F});
+  draw(commands, constants, sure, commands_, first, true);
+
+  if (others.empty()) return;
+  const DrawList tested = list_draws(scene, others, false);
+  occlusion_->record(commands, *depth_, constants, tested, first);
+  use_image(commands, *ids_, ImageUse::kColorTarget);
+  use_image(commands, *depth_, ImageUse::kDepthTarget);
+  draw(commands, constants, tested, occlusion_->commands(), first, false);
+}
+
+void VisibilityPass::draw(const vk::raii::CommandBuffer& commands, const visibility::ViewConstants& view,
+                          const DrawList& list, const Buffer& indirect, std::uint32_t first_command,
+                          bool clear) {
+  const auto color =
+      target(*ids_, clear, vk::ClearColorValue(std::array<std::uint32_t, 4>{visibility::kNoPatch}));
+  const auto depth = target(*depth_, clear, vk::ClearDepthStencilValue{.depth = 0.0F});
   const Extent2D extent = ids_->extent();
   commands.beginRendering({.renderArea = {.extent = {extent.width, extent.height}},
                            .layerCount = 1,
@@ -130,12 +166,6 @@ void VisibilityPass::record_view(const vk::raii::CommandBuffer& commands, const 
                            .pColorAttachments = &color,
                            .pDepthAttachment = &depth});
   set_viewport(commands, extent);
-  draw(commands, view_constants(view, scene.origin), list, commands_, first);
-  commands.endRendering();
-}
-
-void VisibilityPass::draw(const vk::raii::CommandBuffer& commands, const visibility::ViewConstants& view,
-                          const DrawList& list, const Buffer& indirect, std::uint32_t first_command) {
   for (const DrawRange& range : list.ranges) {
     const bool opaque = range.id_class == IdClass::kOpaque;
     const Pipeline& pipeline = pipelines_.draw(range.id_class, range.double_sided);
@@ -153,6 +183,7 @@ void VisibilityPass::draw(const vk::raii::CommandBuffer& commands, const visibil
                                  (first_command + range.first_command) * sizeof(DrawCommand),
                                  range.command_count, sizeof(DrawCommand));
   }
+  commands.endRendering();
 }
 
 void VisibilityPass::record_marks(const vk::raii::CommandBuffer& commands) {

@@ -8,6 +8,7 @@
 #include "render/passes/scene_gpu.h"
 #include "render/passes/visibility_draws.h"
 #include "render/passes/visibility_geometry.h"
+#include "render/passes/visibility_occlusion.h"
 #include "render/passes/visibility_pipelines.h"
 
 #include <cstdint>
@@ -24,19 +25,23 @@ struct VisibilitySettings {
   double id_scale = 1.0;        ///< > 0; id pixels per display pixel along a side
   std::uint32_t max_views = 2;  ///< >= 1
   Duration prediction_step = std::chrono::microseconds(33'333);
+  bool occlusion = true;  ///< drop hidden chunks before their vertices are transformed; same picture
 };
 
 /// What one frame's recording amounts to.
 struct VisibilityStats {
   std::uint32_t views = 0;
   std::uint32_t chunks_in_view = 0;  ///< inside a view's pyramid, summed over views
-  std::uint32_t draws = 0;           ///< commands, summed over views
+  std::uint32_t chunks_tested = 0;   ///< of these, drawn only if the occlusion test lets them; also summed
 };
 
 /// The potentially visible set ([SAS] 3.1): id buffers of the current pose and of linearly predicted ones,
 /// each with an enlarged field of view and reversed-Z depth; patches marked in compute; and for each marked
 /// patch the size that it wants in the atlas, seen from the current pose.
 ///
+/// Chunks that showed something in the last frame are drawn first; of the others only those which could show
+/// behind what is then there. That drops no visible pixel; but where two surfaces have equal depth, the one
+/// that happens to be drawn first shows.
 /// Masked surfaces have their holes; blended ones hide nothing and are marked where they pass the depth test.
 class VisibilityPass {
  public:
@@ -54,9 +59,10 @@ class VisibilityPass {
 
  private:
   void make_targets(Extent2D extent);
+  void find_known_chunks();
   void record_view(const vk::raii::CommandBuffer& commands, const Camera& view, std::uint32_t index);
   void draw(const vk::raii::CommandBuffer& commands, const visibility::ViewConstants& view,
-            const DrawList& list, const Buffer& indirect, std::uint32_t first_command);
+            const DrawList& list, const Buffer& indirect, std::uint32_t first_command, bool clear);
   void record_marks(const vk::raii::CommandBuffer& commands);
   void record_levels(const vk::raii::CommandBuffer& commands, const Camera& camera);
 
@@ -69,6 +75,8 @@ class VisibilityPass {
   VisibilityPipelines pipelines_;
   vk::raii::Sampler sampler_;
   Buffer commands_;  ///< DrawCommand, a chunk each for every view
+  std::optional<ChunkOcclusion> occlusion_;
+  std::vector<bool> known_;  ///< by chunk: drawn without a test
   std::unique_ptr<Image> ids_;
   std::unique_ptr<Image> depth_;
   VisibilityStats stats_;

@@ -192,6 +192,54 @@ TEST_F(Visibility, EachPixelShowsWhatARayHits) {
   }
 }
 
+/// Rooms of 4 x 4 x 4 m in a row with a doorway each, and things in them, many chunks behind walls.
+std::shared_ptr<const Scene> rooms() {
+  TinyScene scene;
+  Random random(11);
+  const auto draw = [&](double half) { return static_cast<float>((random.uniform() * 2 - 1) * half); };
+  for (int room = 0; room < 8; ++room) {
+    const auto z = static_cast<float>(-4 * room);
+    scene.material(kDoubleSided);
+    const float door = draw(1.5F);
+    scene.wall(-2, -2, door - 0.3F, 2, z);
+    scene.wall(door + 0.3F, -2, 2, 2, z);
+    scene.wall(door - 0.3F, 0, door + 0.3F, 2, z);
+    for (int thing = 0; thing < 6; ++thing) {
+      scene.material(thing % 2 == 0 ? kOpaque : kDoubleSided);
+      for (int i = 0; i < 4; ++i) {
+        const glm::vec3 p{draw(1.5), draw(1.5), z - 2 + draw(1.5F)};
+        scene.patch({p, p + glm::vec3{draw(0.3), draw(0.3), draw(0.3)}, p + glm::vec3{draw(0.3), 0.2, 0.1}});
+      }
+    }
+  }
+  scene.material(kBlend);
+  for (int room = 0; room < 8; ++room) scene.wall(-2, -2, 2, 2, -4.0F * static_cast<float>(room) - 1);
+  return scene.finish();
+}
+
+TEST_F(Visibility, OcclusionTestChangesNoPixelAndNoPatch) {
+  const auto scene = rooms();
+  Viewer all(scene, {.fov_scale = 1.0, .max_views = 2, .occlusion = false});
+  Viewer tested(scene, {.fov_scale = 1.0, .max_views = 2, .occlusion = true});
+  Camera camera = small_camera();
+  camera.extent = {240, 160};
+  std::uint32_t dropped = 0;
+  for (int i = 0; i < 40; ++i) {
+    // A walk through the rooms that turns as it goes, with two jumps that make the last frame useless.
+    const double at = i < 20 ? 3.0 - 0.7 * i : i < 30 ? -28 + 0.5 * i : 10.0 - 0.8 * i;
+    camera.pose.position = {0.8 * std::sin(i * 0.7), 0.3 * std::cos(i * 1.1), at};
+    camera.pose.orientation = glm::angleAxis(0.6 * std::sin(i * 0.5), glm::dvec3{0, 1, 0});
+    camera.pose.velocity = {0.5, 0, -2};
+    const Seen expected = all.see(camera, std::chrono::milliseconds(50));
+    const Seen seen = tested.see(camera, std::chrono::milliseconds(50));
+    ASSERT_EQ(seen.ids, expected.ids) << "frame " << i;
+    ASSERT_EQ(seen.words, expected.words) << "frame " << i;
+    dropped += tested.stats().chunks_tested;
+  }
+  EXPECT_GT(dropped, 0U);
+  EXPECT_EQ(all.stats().chunks_tested, 0U);
+}
+
 TEST_F(Visibility, HidesWhatIsBehindAndCullsBacksOfSingleSided) {
   TinyScene scene;
   scene.material(kOpaque);
