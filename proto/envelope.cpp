@@ -2,6 +2,7 @@
 
 #include "proto/datagram.h"
 #include "proto/framing.h"
+#include "proto/plain_text.h"
 
 namespace atlaswire::proto {
 
@@ -15,6 +16,10 @@ bool in_range(double v, double low, double high) { return v >= low && v <= high;
 
 bool extent_in(const wire::Extent& e, std::uint32_t low, std::uint32_t high) {
   return e.width() >= low && e.width() <= high && e.height() >= low && e.height() <= high;
+}
+
+bool is_text(const std::string& text, std::size_t limit) {
+  return text.size() <= limit && is_plain_text(text);
 }
 
 /// Collects the first rule that is broken, so that a message's rules read as a table.
@@ -39,7 +44,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 Result<void> check(const wire::ClientHello& m) {
   Rules rules;
   rules.require(m.version_min() >= 1 && m.version_min() <= m.version_max(), "client_hello.version");
-  rules.require(m.client_name().size() <= 128, "client_hello.client_name");
+  rules.require(is_text(m.client_name(), 128), "client_hello.client_name");
   rules.present(m.has_display(), "client_hello.display");
   rules.require(extent_in(m.display(), 16, kMaxSide), "client_hello.display");
   rules.require(in_range(m.vertical_fov(), 0.1, 3.0), "client_hello.vertical_fov");
@@ -58,7 +63,7 @@ Result<void> check(const wire::ClientHello& m) {
 
 Result<void> check(const wire::StreamInfo& m) {
   Rules rules;
-  rules.require(m.scene().size() <= 256, "stream.scene");
+  rules.require(is_text(m.scene(), 256), "stream.scene");
   rules.require(extent_in(m.picture(), 1, kMaxSide), "stream.picture");
   rules.require(extent_in(m.atlas(), 1, kMaxSide), "stream.atlas");
   const std::uint64_t planes = m.has_coverage() ? 2 : 1;
@@ -107,7 +112,7 @@ Result<void> check(const wire::Refusal& m) {
   Rules rules;
   rules.require(m.code() != wire::Refusal::UNSPECIFIED && wire::Refusal::Code_IsValid(m.code()),
                 "refusal.code");
-  rules.require(m.text().size() <= 1024, "refusal.text");
+  rules.require(is_text(m.text(), 1024), "refusal.text");
   return rules.result();
 }
 
@@ -115,7 +120,7 @@ Result<void> check(const wire::Goodbye& m) {
   Rules rules;
   rules.require(m.reason() != wire::Goodbye::UNSPECIFIED && wire::Goodbye::Reason_IsValid(m.reason()),
                 "goodbye.reason");
-  rules.require(m.text().size() <= 1024, "goodbye.text");
+  rules.require(is_text(m.text(), 1024), "goodbye.text");
   return rules.result();
 }
 

@@ -49,9 +49,7 @@ Result<Terms> agree(const ClientHello& hello, std::span<const std::uint32_t> met
 
 Refusal refusal_for(const Error& error) {
   const bool version = error.code == make_error_code(WireError::kBadVersion);
-  Refusal refusal{version ? Refusal::Code::kVersion : Refusal::Code::kBadHello, error.message()};
-  if (refusal.text.size() > 1024) refusal.text.resize(1024);
-  return refusal;
+  return {version ? Refusal::Code::kVersion : Refusal::Code::kBadHello, error.message()};
 }
 
 Result<void> check_answer(const ClientHello& hello, const ServerHello& answer) {

@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "proto/envelope.h"
 #include "proto/framing.h"
+#include "proto/plain_text.h"
 
 #include <algorithm>
 
@@ -35,7 +36,7 @@ void to_wire(const ClientHello& m, wire::Envelope& envelope) {
   auto& out = *envelope.mutable_client_hello();
   out.set_version_min(m.versions.lowest);
   out.set_version_max(m.versions.highest);
-  out.set_client_name(m.client_name);
+  out.set_client_name(to_plain_text(m.client_name, 128));
   to_wire(m.display, *out.mutable_display());
   out.set_vertical_fov(m.vertical_fov);
   to_wire(m.max_picture, *out.mutable_max_atlas());
@@ -69,7 +70,7 @@ StreamDescription from_wire(const wire::StreamInfo& m) {
 }
 
 void to_wire(const StreamDescription& m, wire::StreamInfo& out) {
-  out.set_scene(m.scene);
+  out.set_scene(to_plain_text(m.scene, 256));
   to_wire(m.picture, *out.mutable_picture());
   to_wire(m.atlas, *out.mutable_atlas());
   out.set_has_coverage(m.has_coverage);
@@ -141,7 +142,7 @@ Refusal from_wire(const wire::Refusal& m) { return {static_cast<Refusal::Code>(m
 void to_wire(const Refusal& m, wire::Envelope& envelope) {
   auto& out = *envelope.mutable_refusal();
   out.set_code(static_cast<wire::Refusal::Code>(m.code));
-  out.set_text(m.text);
+  out.set_text(to_plain_text(m.text, 1024));
 }
 
 Goodbye from_wire(const wire::Goodbye& m) { return {static_cast<Goodbye::Reason>(m.reason()), m.text()}; }
@@ -149,7 +150,7 @@ Goodbye from_wire(const wire::Goodbye& m) { return {static_cast<Goodbye::Reason>
 void to_wire(const Goodbye& m, wire::Envelope& envelope) {
   auto& out = *envelope.mutable_goodbye();
   out.set_reason(static_cast<wire::Goodbye::Reason>(m.reason));
-  out.set_text(m.text);
+  out.set_text(to_plain_text(m.text, 1024));
 }
 
 StatsReport from_wire(const wire::StatsReport& m) {

@@ -100,7 +100,7 @@ using Message = std::variant<ClientHello, ServerHello, FrameMeta, Refusal, Goodb
 Result<Message> parse_message(ByteView envelope);
 
 /// Appends `u32 length | envelope` to `out`, ready for the socket. The message must be valid by the rules
-/// of `parse_message`, whole meta bytes included (kMaxEnvelope).
+/// of `parse_message` (sizes, ranges, at most kMaxEnvelope octets); only texts are made plain and cut here.
 void append_message(const Message& message, ByteBuffer& out);
 
 /// "client hello", "frame meta": for logs and errors.
