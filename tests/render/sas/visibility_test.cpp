@@ -212,6 +212,14 @@ std::shared_ptr<const Scene> rooms() {
       }
     }
   }
+  // A shell around all, so that tiles are covered and a new chunk must be told to be nearer than they are.
+  scene.material(kDoubleSided);
+  for (const float side : {-1.0F, 1.0F}) {
+    const float d = 40 * side;
+    scene.patch({{d, -40, -50}, {d, 40, -50}, {d, 40, 40}, {d, -40, 40}});
+    scene.patch({{-40, d, -50}, {40, d, -50}, {40, d, 40}, {-40, d, 40}});
+    scene.wall(-40, -40, 40, 40, side < 0 ? -50.0F : 40.0F);
+  }
   scene.material(kBlend);
   for (int room = 0; room < 8; ++room) scene.wall(-2, -2, 2, 2, -4.0F * static_cast<float>(room) - 1);
   return scene.finish();
