@@ -41,12 +41,16 @@ Daemon::Impl::Impl(const DaemonSettings& settings)
   if (settings.mirror) mirror_ = std::make_unique<Mirror>(io_, *settings.mirror);
 }
 
-Daemon::Impl::~Impl() {
+Daemon::Impl::~Impl() { end_connections(); }
+
+void Daemon::Impl::end_connections() {
   for (const auto& connection : std::exchange(connections_, {})) connection.second->abort("daemon ends");
+  reaper_.reset();
 }
 
 void Daemon::Impl::serve(StreamSource& source, const std::function<void()>& on_ready) {
   source_ = &source;
+  reaper_ = std::make_unique<Reaper>();
   boost::system::error_code e;
   acceptor_.listen(asio::socket_base::max_listen_connections, e);
   if (e) throw cannot_listen(settings_.listen, port_, e.message());
@@ -60,6 +64,8 @@ void Daemon::Impl::serve(StreamSource& source, const std::function<void()>& on_r
                source.description().atlas.height);
   if (on_ready) on_ready();
   io_.run();
+  udp_->close();
+  end_connections();
   spdlog::info("served {} sessions; bye", last_session_);
 }
 

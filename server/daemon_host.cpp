@@ -19,7 +19,7 @@ std::optional<proto::Refusal> Daemon::Impl::admit(const Connection& connection) 
   });
   const std::uint32_t most = settings_.admission.max_sessions;
   // Streams that are ending still hold a device's memory: a storm of reconnects must not pile them up.
-  if (static_cast<std::uint64_t>(sessions) >= most || reaper_.pending() >= most + 1) {
+  if (static_cast<std::uint64_t>(sessions) >= most || reaper_->pending() >= most + 1) {
     return proto::Refusal{Code::kCapacity,
                           fmt::format("{} of {} sessions are taken; try again later", sessions, most)};
   }
@@ -62,7 +62,7 @@ std::unique_ptr<StreamRunner> Daemon::Impl::start_stream(Connection& connection)
 
 void Daemon::Impl::end_stream(std::unique_ptr<StreamRunner> runner) {
   --streaming_;
-  reaper_.take(std::move(runner));
+  reaper_->take(std::move(runner));
 }
 
 void Daemon::Impl::send(const Connection& connection, const OutgoingDatagram& datagram) {

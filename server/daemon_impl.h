@@ -45,6 +45,7 @@ class Daemon::Impl final : public ConnectionHost {
   void wait_signal();
   void drain(const std::string& why);
   void finish_drain();
+  void end_connections();
   void accept();
   void take(tcp::socket socket);
   void on_datagram(const proto::PeerAddress& from, ByteView datagram);
@@ -78,7 +79,7 @@ class Daemon::Impl final : public ConnectionHost {
   bool draining_ = false;
   std::map<proto::PeerAddress, SessionId> by_address_;
   std::map<SessionId, std::shared_ptr<Connection>> connections_;
-  Reaper reaper_;  ///< last: its runners post to `io_`
+  std::unique_ptr<Reaper> reaper_;  ///< while serving: its runners use `source_` and post to `io_`
 };
 
 }  // namespace atlaswire::server
