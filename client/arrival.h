@@ -6,8 +6,8 @@
 #include "proto/frame_assembler.h"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
-#include <variant>
 
 namespace atlaswire::client {
 
@@ -25,8 +25,11 @@ struct UpdateArrival {
   ServerTimes server;
 };
 
-/// What the network thread hands to the decode thread, in the order of arrival.
-using Arrival = std::variant<proto::AssembledFrame, UpdateArrival>;
+/// What the network thread hands to the decode thread, in the order of arrival; exactly one is there.
+struct Arrival {
+  std::unique_ptr<proto::AssembledFrame> frame;
+  std::unique_ptr<UpdateArrival> update;
+};
 using ArrivalQueue = BoundedQueue<Arrival>;
 
 /// Places of the queue. With more than `kMaxQueuedFrames` waiting, access units are dropped and an IDR is

@@ -31,7 +31,7 @@ class BoundedQueue {
     std::unique_lock lock(mutex_);
     filled_.wait(lock, [&] { return closed_ || !items_.empty(); });
     if (items_.empty()) return std::nullopt;
-    T v = std::move(items_.front());
+    std::optional<T> v(std::move(items_.front()));
     items_.pop_front();
     return v;
   }

@@ -11,7 +11,6 @@
 #include <mutex>
 #include <thread>
 #include <utility>
-#include <variant>
 
 namespace atlaswire::client {
 namespace {
@@ -55,7 +54,11 @@ class DecodeThread::Impl {
         mesher_(stream.grid),
         thread_([this] { run(); }) {}
 
-  ~Impl() { thread_.join(); }
+  ~Impl() { finish(); }
+
+  void finish() {
+    if (thread_.joinable()) thread_.join();
+  }
 
   [[nodiscard]] DecodeCounts counts() const {
     const std::lock_guard lock(mutex_);
@@ -66,11 +69,8 @@ class DecodeThread::Impl {
   void run() {
     while (std::optional<Arrival> arrival = arrivals_->pop()) {
       if (broken_) continue;  // drain, so that nobody waits for places
-      if (auto* frame = std::get_if<proto::AssembledFrame>(&*arrival)) {
-        on_frame(*frame);
-      } else {
-        on_update(std::move(std::get<UpdateArrival>(*arrival)));
-      }
+      if (arrival->frame) on_frame(*arrival->frame);
+      if (arrival->update) on_update(std::move(*arrival->update));
       pair_up();
     }
   }
@@ -186,6 +186,8 @@ DecodeThread::DecodeThread(const proto::StreamDescription& stream, std::uint32_t
                            ArrivalQueue& arrivals, HandOver<Pair>& pairs, DecodeTroubles troubles)
     : impl_(std::make_unique<Impl>(stream, decoder_threads, arrivals, pairs, std::move(troubles))) {}
 DecodeThread::~DecodeThread() = default;
+
+void DecodeThread::finish() { impl_->finish(); }
 
 DecodeCounts DecodeThread::counts() const { return impl_->counts(); }
 

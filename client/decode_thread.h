@@ -37,11 +37,13 @@ class DecodeThread {
   /// `arrivals` and `pairs` outlive it.
   DecodeThread(const proto::StreamDescription& stream, std::uint32_t decoder_threads, ArrivalQueue& arrivals,
                HandOver<Pair>& pairs, DecodeTroubles troubles);
-  /// Waits for the thread: close the queue first.
+  /// As `finish`.
   ~DecodeThread();
   DecodeThread(const DecodeThread&) = delete;
   DecodeThread& operator=(const DecodeThread&) = delete;
 
+  /// Waits until everything in the queue is decoded: close it first.
+  void finish();
   [[nodiscard]] DecodeCounts counts() const;
 
  private:

@@ -220,8 +220,9 @@ class NetworkThread::Impl {
   void sample_pose(Time now) {
     if (now < next_pose_ || !session_->answer() || session_->end()) return;
     next_pose_ = std::max(next_pose_ + settings_.pose_interval, now);
-    const Pose pose = settings_.sample_pose(now);
-    if (const auto id = session_->on_pose(pose, now)) poses_.add({.id = *id, .sampled = now, .pose = pose});
+    const std::optional<Pose> pose = settings_.sample_pose(now);
+    if (!pose) return;
+    if (const auto id = session_->on_pose(*pose, now)) poses_.add({.id = *id, .sampled = now, .pose = *pose});
   }
 
   void set_alarm() {
@@ -237,12 +238,16 @@ class NetworkThread::Impl {
     while (auto update = session_->pop_update()) {
       const ServerTimes server = server_times(update->meta);
       ++updates_;
-      if (!arrivals_->try_push(UpdateArrival{std::move(*update), server})) {
+      auto arrival = std::make_unique<UpdateArrival>(UpdateArrival{std::move(*update), server});
+      if (!arrivals_->try_push({.frame = nullptr, .update = std::move(arrival)})) {
         session_->fail("the viewer cannot keep up with the server's meta updates");
       }
     }
     while (auto frame = session_->pop_frame()) {
-      if (arrivals_->size() < kMaxQueuedFrames && arrivals_->try_push(std::move(*frame))) continue;
+      auto arrival = std::make_unique<proto::AssembledFrame>(std::move(*frame));
+      if (arrivals_->size() < kMaxQueuedFrames &&
+          arrivals_->try_push({.frame = std::move(arrival), .update = nullptr}))
+        continue;
       ++overrun_frames_;
       session_->on_decode_failed();
     }

@@ -24,7 +24,7 @@ struct NetworkSettings {
   SessionSettings session;
   Duration pose_interval = std::chrono::milliseconds(16);
   /// The tracker, called on the network thread each `pose_interval` once the handshake has ended.
-  std::function<Pose(Time)> sample_pose;
+  std::function<std::optional<Pose>(Time)> sample_pose;
 };
 
 /// The session's numbers at one instant.
