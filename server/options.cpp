@@ -123,8 +123,8 @@ void add_network_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
                     "Seconds a client has from connecting to its first valid datagram, 0.1..600");
   group->add_option("--idle-timeout", raw.idle_timeout_s,
                     "Seconds without a pose or report until a session ends, 0.1..3600");
-  group->add_option("--payload", s.delivery.payload_bytes,
-                    "RTP payload bytes a packet, 200..1400: fewer packets against the path's MTU");
+  group->add_option("--max-datagram", s.delivery.max_datagram,
+                    "Octets of a media datagram at most, 200..1400: fewer packets against the path's MTU");
   group->add_option("--pacing", s.delivery.pacing,
                     "Frames leave at this multiple of --bitrate, 1..100: latency against bursts");
   group->add_option("--mirror", raw.mirror,
@@ -213,7 +213,7 @@ void apply_network(const Raw& raw, DaemonSettings& s) {
   demand_range("--max-connections-per-address", s.admission.max_connections_per_address, 1U, 65'536U);
   s.admission.hello_timeout = parse_seconds("--hello-timeout", raw.hello_timeout_s, 0.1, 600);
   s.admission.idle_timeout = parse_seconds("--idle-timeout", raw.idle_timeout_s, 0.1, 3600);
-  demand_range("--payload", s.delivery.payload_bytes, 200U, 1400U);
+  demand_range("--max-datagram", s.delivery.max_datagram, 200U, 1400U);
   demand_range("--pacing", s.delivery.pacing, 1.0, 100.0);
   if (!raw.mirror.empty()) s.mirror = parse_endpoint(raw.mirror, "--mirror");
   if (s.print_sdp && !s.mirror) s.mirror = MirrorSettings{"127.0.0.1", 5004};

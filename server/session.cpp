@@ -23,7 +23,7 @@ MediaOutbox::Settings media_settings(const SessionSettings& s, const SessionKeys
   media.rtp.ssrc = keys.ssrc;
   media.rtp.first_sequence = keys.first_sequence;
   media.rtp.timestamp_base = keys.timestamp_base;
-  media.rtp.max_datagram = s.delivery.payload_bytes;
+  media.rtp.max_datagram = s.delivery.max_datagram;
   media.pacer.max_queued.count = s.delivery.media_queue_bytes;
   media.pacer.rate = proto::kUnlimitedRate;
   if (s.bit_rate.bits_per_second != 0) {
@@ -31,6 +31,16 @@ MediaOutbox::Settings media_settings(const SessionSettings& s, const SessionKeys
     media.pacer.rate.bits_per_second = static_cast<std::uint64_t>(rate);
   }
   return media;
+}
+
+/// What the wire demands of a text: one line, no control characters, 1024 octets. Whatever is not ASCII is
+/// replaced: cut in the middle it would be no UTF-8.
+std::string wire_text(const std::string& text) {
+  std::string out = text.substr(0, 1024);
+  for (char& c : out) {
+    if (c < 0x20 || c > 0x7E) c = c == '\n' ? ' ' : '?';
+  }
+  return out;
 }
 
 std::optional<Time> earliest(std::optional<Time> a, std::optional<Time> b) {
@@ -127,7 +137,7 @@ void Session::accept(proto::StreamDescription stream, Time now) {
 
 void Session::refuse(const proto::Refusal& refusal, Time now) {
   if (!is_open()) return;
-  reliable_.push(refusal, now);
+  reliable_.push(proto::Refusal{refusal.code, wire_text(refusal.text)}, now);
   state_ = SessionState::kClosing;
   closing_since_ = now;
   end_reason_ = fmt::format("refused ({}): {}", proto::name(refusal.code), refusal.text);
@@ -139,7 +149,7 @@ void Session::close(proto::Goodbye::Reason reason, const std::string& text, Time
     const bool draining = reason == proto::Goodbye::Reason::kDraining;
     return refuse({draining ? proto::Refusal::Code::kDraining : proto::Refusal::Code::kBadHello, text}, now);
   }
-  reliable_.push(proto::Goodbye{reason, text.substr(0, 1024)}, now);
+  reliable_.push(proto::Goodbye{reason, wire_text(text)}, now);
   state_ = SessionState::kClosing;
   closing_since_ = now;
   end_reason_ = fmt::format("{}: {}", proto::name(reason), text);

@@ -46,8 +46,8 @@ struct AdmissionSettings {
 
 /// How a session's bytes leave.
 struct DeliverySettings {
-  std::uint32_t payload_bytes = 1200;  ///< RTP payload at most, 200..1400
-  double pacing = 2.5;                 ///< media leaves at this multiple of the bit rate, >= 1
+  std::uint32_t max_datagram = 1200;  ///< octets of a media datagram, RTP header included; 200..1400
+  double pacing = 2.5;                ///< media leaves at this multiple of the bit rate, >= 1
   std::size_t tcp_queue_bytes = std::size_t{8} << 20U;    ///< above it the stream pauses
   std::size_t media_queue_bytes = std::size_t{4} << 20U;  ///< a frame that does not fit is dropped whole
 };

@@ -325,6 +325,14 @@ TEST_F(SessionEnd, DrainGivesUpOnAClientThatReadsNothing) {
   EXPECT_EQ(session->state(), SessionState::kClosed);
 }
 
+TEST_F(SessionEnd, ReasonsAreMadeFitForTheWire) {
+  stream_to(home);
+  session->close(Reason::kInternal, "two\nlines, \x01, \xC3\xA4" + std::string(2000, 'x'), now);
+  const auto last = replies();
+  ASSERT_EQ(last.size(), 1U) << "the client's parser takes it";
+  EXPECT_THAT(std::get<proto::Goodbye>(last[0]).text, HasSubstr("two lines, ?, ??xxx"));
+}
+
 TEST_F(SessionEnd, ServerMessagesFromAClientBreakTheProtocol) {
   stream_to(home);
   feed(proto::FrameMeta{});
