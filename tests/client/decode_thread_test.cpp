@@ -1,0 +1,105 @@
+#include "client/decode_thread.h"
+
+#include "tests/client/synthetic_pair.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace atlaswire::client {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::square_stream;
+using testing::SquareServer;
+
+struct DecodeThreadTest : ::testing::Test {
+  SquareServer server;
+  ArrivalQueue arrivals{kArrivalPlaces};
+  HandOver<Pair> pairs;
+  int idrs_wanted = 0;
+  std::string broken;
+
+  DecodeCounts run(std::vector<Arrival> input) {
+    for (Arrival& a : input) EXPECT_TRUE(arrivals.try_push(std::move(a)));
+    arrivals.close();
+    DecodeThread decoder(square_stream(), 1, arrivals, pairs,
+                         {.decode_failed = [this] { ++idrs_wanted; },
+                          .peer_broke = [this](std::string why) { broken = std::move(why); }});
+    decoder.finish();
+    return decoder.counts();
+  }
+
+  template <class... A>
+  static std::vector<Arrival> list(A... arrivals_in) {
+    std::vector<Arrival> all;
+    (all.push_back(std::move(arrivals_in)), ...);
+    return all;
+  }
+};
+
+Arrival garbage_picture(std::uint32_t n) {
+  auto frame = std::make_unique<proto::AssembledFrame>();
+  frame->frame = FrameId{n};
+  frame->access_unit = {std::byte{0}, std::byte{0},    std::byte{0},
+                        std::byte{1}, std::byte{0x41}, std::byte{0xFF}};
+  return {.frame = std::move(frame), .update = nullptr};
+}
+
+TEST_F(DecodeThreadTest, HandsOverTheNewestPair) {
+  const DecodeCounts c = run(list(server.update(0, true), server.picture(0, 90, true),
+                                  server.picture(1, 120, false), server.update(1, false)));
+  EXPECT_EQ(c.decoded, 2U);
+  EXPECT_EQ(c.pairing.paired, 2U);
+  EXPECT_EQ(c.never_shown, 1U);
+  EXPECT_EQ(c.patches, 1U);
+  const auto pair = pairs.take();
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->times.frame, FrameId{1});
+  EXPECT_EQ(pair->mesh.indices.size(), 6U);
+  EXPECT_NEAR(pair->picture->view().y[0], 120, 3);
+  EXPECT_GE(pair->times.ready, pair->times.video_arrival);
+  EXPECT_EQ(broken, "");
+}
+
+TEST_F(DecodeThreadTest, AsksForAnIdrAfterGarbageAndSkipsUntilItComes) {
+  const DecodeCounts c =
+      run(list(server.update(0, true), server.picture(0, 90, true), garbage_picture(1),
+               server.update(1, false), server.picture(2, 100, false), server.update(2, false),
+               server.picture(3, 150, true), server.update(3, false)));
+  EXPECT_EQ(idrs_wanted, 1);
+  EXPECT_EQ(c.failed, 1U);
+  EXPECT_EQ(c.skipped, 1U);
+  EXPECT_EQ(pairs.take()->times.frame, FrameId{3});
+}
+
+TEST_F(DecodeThreadTest, EndsTheSessionWhenAnUpdateIsMalformed) {
+  Arrival bad = server.update(0, true);
+  bad.update->update.meta.meta.resize(5);
+  run(list(std::move(bad)));
+  EXPECT_THAT(broken, HasSubstr("meta update 0"));
+}
+
+TEST_F(DecodeThreadTest, EndsTheSessionWhenAnUpdateContradictsTheReplica) {
+  auto twice = server.update(1, true);
+  Arrival first = server.update(0, true);
+  codec::MetaUpdate again = testing::square_update(FrameId{1}, true);
+  again.reset = false;
+  twice.update->update.meta.meta.clear();
+  codec::make_meta_encoder(codec::MetaCodecKind::kPlain, testing::square_limits())
+      ->encode(again, twice.update->update.meta.meta);
+  run(list(std::move(first), server.picture(0, 90, true), std::move(twice), server.picture(1, 90, false)));
+  EXPECT_THAT(broken, HasSubstr("already"));
+  EXPECT_EQ(pairs.take()->times.frame, FrameId{0}) << "the last good pair stays";
+}
+
+TEST_F(DecodeThreadTest, EndsTheSessionWhenFrameNumbersDisagree) {
+  Arrival wrong = server.update(0, true);
+  wrong.update->update.meta.frame = FrameId{4};
+  run(list(std::move(wrong)));
+  EXPECT_THAT(broken, HasSubstr("in the message of frame 4"));
+}
+
+}  // namespace
+}  // namespace atlaswire::client
