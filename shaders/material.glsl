@@ -20,13 +20,13 @@ layout(set = 1, binding = 2) uniform sampler2D metallic_roughness_texture;
 layout(set = 1, binding = 3) uniform sampler2D normal_texture;
 layout(set = 1, binding = 4) uniform sampler2D emissive_texture;
 
+bool has(uint feature) { return (kFeatures & feature) != 0u; }
+
 #include "shaders/ambient.glsl"
 #include "shaders/brdf.glsl"
 #include "shaders/lights.glsl"
 #include "shaders/shadow.glsl"
 #include "shaders/tonemap.glsl"
-
-bool has(uint feature) { return (kFeatures & feature) != 0u; }
 
 // What is interpolated over a triangle.
 struct SurfacePoint {
@@ -89,7 +89,7 @@ vec4 evaluate_material(SurfacePoint point) {
     float plane_n_dot_l = dot(geometric, scene.to_sun.xyz);
     if (n_dot_l > 0.0 && plane_n_dot_l > 0.0) {
       float lit = sun_visibility(point.position, geometric, plane_n_dot_l);
-      radiance += scene.sun_color.rgb * lit * reflect_light(surface, normal, to_viewer, scene.to_sun.xyz, n_dot_l);
+      radiance += scene.sun_color.rgb * lit * reflect_light(surface, to_viewer, scene.to_sun.xyz, n_dot_l);
     }
   }
   if (has(kFeatureLights)) radiance += punctual_lights(surface, point.position, normal, to_viewer);

@@ -10,12 +10,12 @@ vec3 octahedral_direction(vec2 p) {
   return normalize(n);
 }
 
-vec3 unpack_normal(uint packed) { return octahedral_direction(unpackSnorm2x16(packed)); }
+vec3 unpack_normal(uint word) { return octahedral_direction(unpackSnorm2x16(word)); }
 
 // Direction, and handedness in w.
-vec4 unpack_tangent(uint packed) {
-  vec3 direction = octahedral_direction(unpackSnorm2x16(packed & 0xfffefffeu));
-  return vec4(direction, (packed & 1u) != 0u ? -1.0 : 1.0);
+vec4 unpack_tangent(uint word) {
+  vec3 direction = octahedral_direction(unpackSnorm2x16(word & 0xfffefffeu));
+  return vec4(direction, (word & 1u) != 0u ? -1.0 : 1.0);
 }
 
 #endif

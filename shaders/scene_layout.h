@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 namespace atlaswire::render::gpu_layout {
 using mat4 = glm::mat4;
 using vec4 = glm::vec4;
+using vec3 = glm::vec3;
 using vec2 = glm::vec2;
 using uint = std::uint32_t;
 #define AW_CONST inline constexpr std::uint32_t
@@ -29,9 +31,10 @@ AW_CONST kFeatureAlphaBlend = 64u;
 AW_CONST kFeatureDoubleSided = 128u;
 AW_CONST kFeatureSun = 256u;
 AW_CONST kFeatureLights = 512u;
-AW_CONST kFeatureDiscard = 1024u;  // alpha below the cutoff is a hole here; else it becomes coverage
+AW_CONST kFeatureSpots = 1024u;
+AW_CONST kFeatureDiscard = 2048u;  // alpha below the cutoff is a hole here; else it becomes coverage
 
-/// Punctual lights that fit in a uniform buffer of 48 KiB.
+/// Punctual lights that fit in a uniform buffer of 32 KiB.
 AW_CONST kMaxLights = 1024u;
 
 /// Push constants of every pass that draws scene geometry.
@@ -61,11 +64,15 @@ struct MaterialConstants {
   vec4 factors;   // metallic, roughness, normal scale, alpha cutoff
 };
 
-/// One point or spot light; the cone is clamp(dot(to light, axis) * scale + offset, 0, 1) squared.
+/// One point or spot light, packed: fetching it is a good part of what it costs. Halves come in pairs, the
+/// first in the low 16 bits.
 struct LightConstants {
-  vec4 position;  // xyz; w: 1 / range^2
-  vec4 color;     // rgb; w: cone scale
-  vec4 axis;      // xyz: against the direction of travel; w: cone offset
+  vec3 position;
+  uint color_rg;               // halves
+  uint color_b_inverse_range;  // halves
+  uint axis;                   // against the direction of travel: two snorm16, octahedral
+  uint cone_scale_offset;      // halves: clamp(dot(to light, axis) * scale + offset, 0, 1) squared
+  uint unused;
 };
 
 #undef AW_CONST
@@ -73,7 +80,7 @@ struct LightConstants {
 static_assert(sizeof(DrawConstants) == 112 && offsetof(DrawConstants, clip_from_texel) == 96);
 static_assert(sizeof(SceneConstants) == 128 && offsetof(SceneConstants, shadow_row) == 64);
 static_assert(sizeof(MaterialConstants) == 48);
-static_assert(sizeof(LightConstants) == 48);
+static_assert(sizeof(LightConstants) == 32);
 }  // namespace atlaswire::render::gpu_layout
 #endif
 

@@ -1,6 +1,7 @@
 #include "render/passes/light_table.h"
 
 #include <algorithm>
+#include <glm/packing.hpp>
 #include <limits>
 #include <numeric>
 
@@ -13,13 +14,21 @@ float weight(const PunctualLight& light) {
   return std::max({light.color.x, light.color.y, light.color.z}) * light.range;
 }
 
+bool is_spot(const PunctualLight& light) { return light.cos_outer > -1.5F; }
+
+std::uint32_t halves(float low, float high) {
+  constexpr float kLargest = 65504.0F;
+  return glm::packHalf2x16({std::min(low, kLargest), std::min(high, kLargest)});
+}
+
 gpu_layout::LightConstants constants_of(const PunctualLight& light) {
-  const bool spot = light.cos_outer > -1.5F;
-  const float scale = spot ? 1.0F / std::max(light.cos_inner - light.cos_outer, 1e-3F) : 0.0F;
-  const float offset = spot ? -light.cos_outer * scale : 1.0F;
-  return {.position = {light.position, 1.0F / (light.range * light.range)},
-          .color = {light.color, scale},
-          .axis = {-light.direction, offset}};
+  const float scale = is_spot(light) ? 1.0F / std::max(light.cos_inner - light.cos_outer, 1e-3F) : 0.0F;
+  const float offset = is_spot(light) ? -light.cos_outer * scale : 1.0F;
+  return {.position = light.position,
+          .color_rg = halves(light.color.x, light.color.y),
+          .color_b_inverse_range = halves(light.color.z, 1.0F / light.range),
+          .axis = pack_normal(-light.direction),
+          .cone_scale_offset = halves(scale, offset)};
 }
 
 }  // namespace
@@ -41,6 +50,7 @@ LightTable make_light_table(const Scene& scene) {
   for (const std::uint32_t light : order) {
     place[light] = static_cast<std::uint32_t>(table.lights.size());
     table.lights.push_back(constants_of(scene.lights[light]));
+    table.spots = table.spots || is_spot(scene.lights[light]);
   }
   for (const Chunk& chunk : scene.chunks) {
     const auto first = static_cast<std::uint32_t>(table.list.size());

@@ -19,6 +19,7 @@ struct LightTable {
   std::vector<std::uint32_t> list;
   std::vector<Range> chunk_ranges;  ///< into `list`, one a chunk
   std::uint32_t dropped = 0;        ///< lights left out
+  bool spots = false;               ///< any of them is a spot light
 };
 
 /// Packs them. Of more lights than fit, those of greatest intensity times range stay.

@@ -124,7 +124,7 @@ std::uint32_t features_of(const Material& m, const Scene& scene, const LightTabl
          bit(m.draw.alpha == PatchClass::Alpha::kMask, kFeatureAlphaMask) |
          bit(m.draw.alpha == PatchClass::Alpha::kBlend, kFeatureAlphaBlend) |
          bit(m.draw.double_sided, kFeatureDoubleSided) | bit(has_sun(scene), kFeatureSun) |
-         bit(!lights.list.empty(), kFeatureLights);
+         bit(!lights.list.empty(), kFeatureLights) | bit(!lights.list.empty() && lights.spots, kFeatureSpots);
 }
 
 std::vector<Binding> scene_bindings() {

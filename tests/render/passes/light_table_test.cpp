@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/packing.hpp>
+
 namespace atlaswire::render {
 namespace {
 
@@ -15,13 +17,16 @@ Scene scene_with(std::uint32_t lights) {
   return scene;
 }
 
+float red_of(const gpu_layout::LightConstants& light) { return glm::unpackHalf2x16(light.color_rg).x; }
+
 TEST(LightTable, KeepsEveryLightThatFits) {
   const LightTable table = make_light_table(scene_with(3));
   EXPECT_EQ(table.dropped, 0U);
   ASSERT_EQ(table.lights.size(), 3U);
   EXPECT_EQ(table.chunk_ranges.at(0).count, 3U);
-  EXPECT_EQ(table.lights[2].color.x, 3.0F);
-  EXPECT_EQ(table.lights[0].position.w, 0.25F);
+  EXPECT_EQ(red_of(table.lights[2]), 3.0F);
+  EXPECT_EQ(glm::unpackHalf2x16(table.lights[0].color_b_inverse_range), glm::vec2(1.0F, 0.5F));
+  EXPECT_FALSE(table.spots);
 }
 
 TEST(LightTable, DropsTheWeakestBeyondTheLimit) {
@@ -31,7 +36,7 @@ TEST(LightTable, DropsTheWeakestBeyondTheLimit) {
   EXPECT_EQ(table.list.size(), gpu_layout::kMaxLights);
   for (const std::uint32_t at : table.list) {
     ASSERT_LT(at, table.lights.size());
-    EXPECT_GT(table.lights[at].color.x, 10.0F);
+    EXPECT_GT(red_of(table.lights[at]), 10.0F);
   }
 }
 
@@ -41,8 +46,10 @@ TEST(LightTable, PointLightsShineAllRoundAndSpotsEndAtTheirCone) {
   scene.lights[1].cos_inner = 0.75F;
   const LightTable table = make_light_table(scene);
   const auto cone = [&](std::size_t light, float cosine) {
-    return cosine * table.lights[light].color.w + table.lights[light].axis.w;
+    const glm::vec2 c = glm::unpackHalf2x16(table.lights[light].cone_scale_offset);
+    return cosine * c.x + c.y;
   };
+  EXPECT_TRUE(table.spots);
   EXPECT_EQ(cone(0, -1.0F), 1.0F);
   EXPECT_NEAR(cone(1, 0.5F), 0.0F, 1e-5F);
   EXPECT_NEAR(cone(1, 0.75F), 1.0F, 1e-5F);
