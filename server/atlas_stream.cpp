@@ -1,5 +1,7 @@
 #include "server/atlas_stream.h"
 
+#include "proto/plain_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -81,7 +83,7 @@ Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
 proto::StreamDescription describe(const render::Scene& scene, const AtlasStream& stream,
                                   const StreamSettings& settings) {
   proto::StreamDescription d;
-  d.scene = scene.name.substr(0, 256);
+  d.scene = proto::to_plain_text(scene.name, 256);
   d.picture = stream.picture_extent();
   d.atlas = settings.render.atlas;
   d.has_coverage = scene.requirements.alpha();

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "proto/handshake.h"
+#include "proto/plain_text.h"
 
 #include <fmt/format.h>
 
@@ -33,15 +34,7 @@ MediaOutbox::Settings media_settings(const SessionSettings& s, const SessionKeys
   return media;
 }
 
-/// What the wire demands of a text: one line, no control characters, 1024 octets. Whatever is not ASCII is
-/// replaced: cut in the middle it would be no UTF-8.
-std::string wire_text(const std::string& text) {
-  std::string out = text.substr(0, 1024);
-  for (char& c : out) {
-    if (c < 0x20 || c > 0x7E) c = c == '\n' ? ' ' : '?';
-  }
-  return out;
-}
+constexpr std::size_t kMaxText = 1024;
 
 std::optional<Time> earliest(std::optional<Time> a, std::optional<Time> b) {
   if (!a || !b) return a ? a : b;
@@ -137,7 +130,7 @@ void Session::accept(proto::StreamDescription stream, Time now) {
 
 void Session::refuse(const proto::Refusal& refusal, Time now) {
   if (!is_open()) return;
-  reliable_.push(proto::Refusal{refusal.code, wire_text(refusal.text)}, now);
+  reliable_.push(proto::Refusal{refusal.code, proto::to_plain_text(refusal.text, kMaxText)}, now);
   state_ = SessionState::kClosing;
   closing_since_ = now;
   end_reason_ = fmt::format("refused ({}): {}", proto::name(refusal.code), refusal.text);
@@ -149,7 +142,7 @@ void Session::close(proto::Goodbye::Reason reason, const std::string& text, Time
     const bool draining = reason == proto::Goodbye::Reason::kDraining;
     return refuse({draining ? proto::Refusal::Code::kDraining : proto::Refusal::Code::kBadHello, text}, now);
   }
-  reliable_.push(proto::Goodbye{reason, wire_text(text)}, now);
+  reliable_.push(proto::Goodbye{reason, proto::to_plain_text(text, kMaxText)}, now);
   state_ = SessionState::kClosing;
   closing_since_ = now;
   end_reason_ = fmt::format("{}: {}", proto::name(reason), text);

@@ -327,10 +327,10 @@ TEST_F(SessionEnd, DrainGivesUpOnAClientThatReadsNothing) {
 
 TEST_F(SessionEnd, ReasonsAreMadeFitForTheWire) {
   stream_to(home);
-  session->close(Reason::kInternal, "two\nlines, \x01, \xC3\xA4" + std::string(2000, 'x'), now);
+  session->close(Reason::kInternal, "two\nlines, \x01, \xFF" + std::string(2000, 'x'), now);
   const auto last = replies();
   ASSERT_EQ(last.size(), 1U) << "the client's parser takes it";
-  EXPECT_THAT(std::get<proto::Goodbye>(last[0]).text, HasSubstr("two lines, ?, ??xxx"));
+  EXPECT_THAT(std::get<proto::Goodbye>(last[0]).text, HasSubstr("two lines,  , ?xxx"));
 }
 
 TEST_F(SessionEnd, ServerMessagesFromAClientBreakTheProtocol) {
