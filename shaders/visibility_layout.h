@@ -23,8 +23,10 @@ using uint = std::uint32_t;
 AW_CONST kNoPatch = 0xffffffffu;
 /// Invocations of a work group of the passes over patches and chunks.
 AW_CONST kListGroup = 64u;
-/// Pixels that one invocation of the mark pass reads, side by side.
+/// Pixels that one invocation of the mark pass reads, side by side; at most 32.
 AW_CONST kMarkRun = 8u;
+/// Words before the list of visible patches: the level pass's groups (x, y, z), and the list's length.
+AW_CONST kListHeader = 4u;
 /// The grid of farthest depths that chunks are tested against: a fine tile's side in pixels, and a coarse
 /// tile's in fine tiles. Fine tiles come first in the buffer, row by row, then coarse ones.
 AW_CONST kFineTile = 8u;
@@ -57,9 +59,7 @@ struct LevelConstants {
   vec4 camera_high;
   vec4 camera_low;
   float pixels_per_radian;  // of the display, at its centre: half its height over tan(half its field of view)
-  uint patches;
-  uint padding0;
-  uint padding1;
+  uint padding[3];
 };
 
 /// A patch's corners in the position buffer, and how many triangles they make.

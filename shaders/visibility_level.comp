@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What each visible patch wants of the atlas ([SAS] 4.3, eq. 1) as one word, and its mark taken back.
+// What each listed patch wants of the atlas ([SAS] 4.3, eq. 1) as one word, and its mark taken back.
 // Edge lengths are angles times the display's pixels per radian, so a patch is measured alike wherever the
 // viewer looks, behind the camera too.
 #include "shaders/level_layout.h"
@@ -9,10 +9,11 @@
 layout(local_size_x = kListGroup) in;
 
 layout(push_constant) uniform Level { LevelConstants level; };
-layout(set = 0, binding = 1, std430) buffer Marks { uint marks[]; };
+layout(set = 0, binding = 1, std430) writeonly buffer Marks { uint marks[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Corners { PatchCorners corners[]; };
 layout(set = 0, binding = 5, std430) writeonly buffer Levels { uint levels[]; };
+layout(set = 0, binding = 6, std430) readonly buffer List { uint list[]; };
 
 vec3 scene_position(uint i) {
   return vec3(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
@@ -38,12 +39,8 @@ float triangle_area(float x, float y, float z) {
 }
 
 void main() {
-  uint patch_id = gl_GlobalInvocationID.x;
-  if (patch_id >= level.patches) return;
-  if (marks[patch_id] == 0u) {
-    levels[patch_id] = 0u;
-    return;
-  }
+  if (gl_GlobalInvocationID.x >= list[kListHeader - 1u]) return;
+  uint patch_id = list[kListHeader + gl_GlobalInvocationID.x];
   marks[patch_id] = 0u;
 
   uint triangles = corners[patch_id].triangles;

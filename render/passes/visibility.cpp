@@ -73,6 +73,7 @@ VisibilityPass::VisibilityPass(Device& device, const SceneGpu& scene, const Visi
   sets_.write(0, 3, geometry_.positions);
   sets_.write(0, 4, geometry_.corners);
   sets_.write(0, 5, geometry_.levels);
+  sets_.write(0, 6, geometry_.list);
 }
 
 void VisibilityPass::make_targets(Extent2D extent) {
@@ -114,7 +115,7 @@ void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camer
   make_targets(view.extent);
   stats_ = {.views = static_cast<std::uint32_t>(poses.size())};
   find_known_chunks();
-  compute_to_compute(commands);
+  clear_results(commands);
   for (std::uint32_t i = 0; i < poses.size(); ++i) {
     view.pose = poses[i];
     compute_to_draw(commands);
@@ -194,19 +195,25 @@ void VisibilityPass::record_marks(const vk::raii::CommandBuffer& commands) {
                     group_count(ids_->extent().height, 8), 1);
 }
 
+void VisibilityPass::clear_results(const vk::raii::CommandBuffer& commands) {
+  shaders_to_transfer(commands);
+  const std::array<std::uint32_t, visibility::kListHeader> header{0, 1, 1, 0};
+  commands.updateBuffer<std::uint32_t>(geometry_.list.handle(), 0, header);
+  commands.fillBuffer(geometry_.levels.handle(), 0, VK_WHOLE_SIZE, 0);
+  transfer_to_shaders(commands);
+}
+
 void VisibilityPass::record_levels(const vk::raii::CommandBuffer& commands, const Camera& camera) {
-  const auto patches = static_cast<std::uint32_t>(scene_->scene().patches.size());
   visibility::LevelConstants constants{.camera_high = {},
                                        .camera_low = {},
                                        .pixels_per_radian = static_cast<float>(pixels_per_radian(camera)),
-                                       .patches = patches,
-                                       .padding0 = 0,
-                                       .padding1 = 0};
+                                       .padding = {}};
   split(camera.pose.position - scene_->scene().origin, constants.camera_high, constants.camera_low);
   compute_to_compute(commands);
+  compute_to_draw(commands);
   pipelines_.level().bind(commands, {sets_.handle()});
   pipelines_.level().push(commands, constants);
-  commands.dispatch(group_count(patches, visibility::kListGroup), 1, 1);
+  commands.dispatchIndirect(geometry_.list.handle(), 0);
   writes_to_host(commands);
 }
 

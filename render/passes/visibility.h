@@ -63,6 +63,7 @@ class VisibilityPass {
   void record_view(const vk::raii::CommandBuffer& commands, const Camera& view, std::uint32_t index);
   void draw(const vk::raii::CommandBuffer& commands, const visibility::ViewConstants& view,
             const DrawList& list, const Buffer& indirect, std::uint32_t first_command, bool clear);
+  void clear_results(const vk::raii::CommandBuffer& commands);
   void record_marks(const vk::raii::CommandBuffer& commands);
   void record_levels(const vk::raii::CommandBuffer& commands, const Camera& camera);
 

@@ -67,9 +67,12 @@ VisibilityGeometry::VisibilityGeometry(Device& device, const Scene& scene)
                             Usage::eStorageBuffer)),
       marks(device_buffer(device, "patch marks", scene.patches.size() * sizeof(std::uint32_t),
                           Usage::eStorageBuffer)),
+      list(device_buffer(device, "visible patches",
+                         (visibility::kListHeader + scene.patches.size()) * sizeof(std::uint32_t),
+                         Usage::eStorageBuffer | Usage::eIndirectBuffer)),
       levels(device, {.name = "patch levels",
                       .size = scene.patches.size() * sizeof(std::uint32_t),
-                      .usage = Usage::eStorageBuffer,
+                      .usage = Usage::eStorageBuffer | Usage::eTransferDst,
                       .residence = Residence::kReadback}) {
   SubmitContext context(device, "visibility upload", 1);
   upload(context, positions, scene.positions);

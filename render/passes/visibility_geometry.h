@@ -14,6 +14,7 @@ struct VisibilityGeometry {
   Buffer indices;    ///< into them, in the order of Scene::indices
   Buffer corners;    ///< visibility::PatchCorners by patch
   Buffer marks;      ///< a word a patch: not 0 if seen in this frame; 0 between frames
+  Buffer list;       ///< visibility::kListHeader words, then the marked patches in no order
   Buffer levels;     ///< a word a patch, for the host
 };
 

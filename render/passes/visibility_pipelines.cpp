@@ -57,7 +57,8 @@ std::vector<Binding> visibility_bindings() {
           {.binding = 2, .type = Type::eCombinedImageSampler, .stages = Stage::eCompute},
           {.binding = 3, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
           {.binding = 4, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
-          {.binding = 5, .type = Type::eStorageBuffer, .stages = Stage::eCompute}};
+          {.binding = 5, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
+          {.binding = 6, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute}};
 }
 
 VisibilityPipelines::VisibilityPipelines(const Device& device, const SceneGpu& scene,

@@ -34,12 +34,13 @@ double heron(double a, double b, double c) {
 
 class LevelPass : public test::GpuTest {
  protected:
-  /// Runs the level shader over patches given by corner positions; all but `hidden` are marked.
+  /// Runs the level shader over patches given by corner positions; all but `hidden` are listed.
   std::vector<std::uint32_t> run(const std::vector<std::vector<glm::vec3>>& patches, const glm::dvec3& camera,
                                  float pixels_per_radian, std::size_t hidden = ~std::size_t{0}) {
     std::vector<glm::vec3> positions;
     std::vector<PatchCorners> corners;
     std::vector<std::uint32_t> marks;
+    std::vector<std::uint32_t> list{1, 1, 1, 0};
     for (const auto& patch : patches) {
       PatchCorners& c = corners.emplace_back();
       for (std::uint32_t i = 0; i < 5; ++i) {
@@ -48,19 +49,25 @@ class LevelPass : public test::GpuTest {
       }
       c.triangles = static_cast<std::uint32_t>(patch.size() - 2);
       positions.insert(positions.end(), patch.begin(), patch.end());
+      if (marks.size() != hidden) {
+        list.push_back(static_cast<std::uint32_t>(marks.size()));
+        ++list[visibility::kListHeader - 1];
+      }
       marks.push_back(marks.size() == hidden ? 0 : 1);
     }
     const Buffer position_buffer = filled("positions", positions);
     const Buffer corner_buffer = filled("corners", corners);
     const Buffer mark_buffer = filled("marks", marks);
-    const Buffer levels = filled("levels", std::vector<std::uint32_t>(patches.size(), 0xdeadbeefU));
-    const DescriptorLayout layout(device(), "level",
-                                  {{.binding = 1}, {.binding = 3}, {.binding = 4}, {.binding = 5}});
+    const Buffer levels = filled("levels", std::vector<std::uint32_t>(patches.size(), 0));
+    const Buffer list_buffer = filled("list", list);
+    const DescriptorLayout layout(
+        device(), "level", {{.binding = 1}, {.binding = 3}, {.binding = 4}, {.binding = 5}, {.binding = 6}});
     DescriptorSets sets(device(), "level", layout);
     sets.write(0, 1, mark_buffer);
     sets.write(0, 3, position_buffer);
     sets.write(0, 4, corner_buffer);
     sets.write(0, 5, levels);
+    sets.write(0, 6, list_buffer);
     const Pipeline pipeline(device(), ComputeSettings{.name = "level",
                                                       .shader = shaders::visibility_level_comp,
                                                       .layouts = {layout.handle()},
@@ -69,9 +76,7 @@ class LevelPass : public test::GpuTest {
     const LevelConstants constants{.camera_high = glm::vec4(high, 0),
                                    .camera_low = glm::vec4(glm::vec3(camera - glm::dvec3(high)), 0),
                                    .pixels_per_radian = pixels_per_radian,
-                                   .patches = static_cast<std::uint32_t>(patches.size()),
-                                   .padding0 = 0,
-                                   .padding1 = 0};
+                                   .padding = {}};
     SubmitContext context(device(), "level");
     context.run([&](const vk::raii::CommandBuffer& commands) {
       pipeline.bind(commands, {sets.handle()});
