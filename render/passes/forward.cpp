@@ -143,18 +143,25 @@ void ForwardPass::draw_scene(const vk::raii::CommandBuffer& commands, const Came
     commands.drawIndexed(triangles * 3, 1, first_triangle * 3, 0, 0);
   };
 
+  // Solid chunks from near to far, so that most hidden pixels are never shaded.
+  std::vector<std::pair<float, std::uint32_t>> solid;
   std::vector<BlendedPatch> blended;
-  for (std::size_t i = 0; i < scene.chunks.size(); ++i) {
+  const glm::vec3 eye{view.high};
+  for (std::uint32_t i = 0; i < scene.chunks.size(); ++i) {
     const Chunk& chunk = scene.chunks[i];
     if (!may_see(view, chunk.box)) continue;
     if (scene.materials[chunk.material].draw.alpha != PatchClass::Alpha::kBlend) {
-      draw(i, chunk.first_triangle, chunk.triangle_count);
+      const glm::vec3 away = eye - glm::clamp(eye, chunk.box.low, chunk.box.high);
+      solid.emplace_back(glm::dot(away, away), i);
       continue;
     }
     for (std::uint32_t p = chunk.first_patch; p < chunk.first_patch + chunk.patch_count; ++p) {
-      blended.push_back(
-          {distance2_of(scene, scene.patches[p], glm::vec3{view.high}), p, static_cast<std::uint32_t>(i)});
+      blended.push_back({distance2_of(scene, scene.patches[p], eye), p, i});
     }
+  }
+  std::ranges::sort(solid);
+  for (const auto& [distance2, chunk] : solid) {
+    draw(chunk, scene.chunks[chunk].first_triangle, scene.chunks[chunk].triangle_count);
   }
   std::ranges::stable_sort(blended, std::ranges::greater{}, &BlendedPatch::distance2);
   for (const BlendedPatch& b : blended) {
