@@ -7,7 +7,6 @@
 
 layout(early_fragment_tests) in;
 
-layout(set = 0, binding = 0, std430) readonly buffer TrianglePatch { uint triangle_patch[]; };
 layout(set = 1, binding = 0) uniform MaterialBlock { MaterialConstants material; };
 layout(set = 1, binding = 1) uniform sampler2D base_color_texture;
 
@@ -17,5 +16,5 @@ layout(location = 1) in vec2 uv;
 void main() {
   // Less than half of one level of eight bits shows nothing.
   if (material.base_color.a * texture(base_color_texture, uv).a < 0.5 / 255.0) return;
-  mark(triangle_patch[first_triangle + uint(gl_PrimitiveID)]);
+  mark(first_triangle + uint(gl_PrimitiveID));
 }

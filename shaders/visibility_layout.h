@@ -19,8 +19,8 @@ using uint = std::uint32_t;
 #define AW_CONST const uint
 #endif
 
-/// The id of a pixel that shows nothing.
-AW_CONST kNoPatch = 0xffffffffu;
+/// The triangle of a pixel that shows nothing.
+AW_CONST kNoTriangle = 0xffffffffu;
 /// Invocations of a work group of the passes over patches and chunks.
 AW_CONST kListGroup = 64u;
 /// Pixels that one invocation of the mark pass reads, side by side; at most 32.

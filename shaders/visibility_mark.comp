@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Marks every patch that the id buffer shows. Each invocation reads a short run of a row, and then marks the
-// patches at which it changes: a loop of few turns where a branch in each pixel would be taken by all.
+// Marks every patch that the id buffer shows. Each invocation reads a short run of a row, and then marks
+// where ids change: a loop of few turns where a branch in each pixel would be taken by all.
 #include "shaders/visibility_list.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -23,7 +23,7 @@ void main() {
   }
   while (changes != 0u) {
     uint changed = texelFetch(ids, ivec2(x + findLSB(changes), y), 0).r;
-    if (changed != kNoPatch) mark(changed);
+    if (changed != kNoTriangle) mark(changed);
     changes &= changes - 1u;
   }
 }

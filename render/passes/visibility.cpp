@@ -158,7 +158,7 @@ void VisibilityPass::draw(const vk::raii::CommandBuffer& commands, const visibil
                           const DrawList& list, const Buffer& indirect, std::uint32_t first_command,
                           bool clear) {
   const auto color =
-      target(*ids_, clear, vk::ClearColorValue(std::array<std::uint32_t, 4>{visibility::kNoPatch}));
+      target(*ids_, clear, vk::ClearColorValue(std::array<std::uint32_t, 4>{visibility::kNoTriangle}));
   const auto depth = target(*depth_, clear, vk::ClearDepthStencilValue{.depth = 0.0F});
   const Extent2D extent = ids_->extent();
   commands.beginRendering({.renderArea = {.extent = {extent.width, extent.height}},

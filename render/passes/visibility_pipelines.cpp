@@ -52,7 +52,7 @@ GraphicsSettings draw_settings(const SceneGpu& scene, const DescriptorLayout& la
 }  // namespace
 
 std::vector<Binding> visibility_bindings() {
-  return {{.binding = 0, .type = Type::eStorageBuffer, .stages = Stage::eFragment},
+  return {{.binding = 0, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute},
           {.binding = 1, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute},
           {.binding = 2, .type = Type::eCombinedImageSampler, .stages = Stage::eCompute},
           {.binding = 3, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
