@@ -11,7 +11,7 @@ layout(push_constant) uniform Picture {
 } picture;
 
 layout(set = 0, binding = 0, std430) readonly buffer Planes { uint words[]; };
-layout(set = 0, binding = 1, rgba8) writeonly uniform image2D target;
+layout(set = 0, binding = 1, std430) writeonly buffer Texels { uvec4 texels[]; };  // RGBA8, four in one
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy) * ivec2(8, 2);
@@ -29,12 +29,14 @@ void main() {
       vec4 luma = unpackUnorm4x8(words[word]);
       vec4 coverage = vec4(1.0);
       if (kCoverage) coverage = unpackUnorm4x8(words[word + row_words * picture.height]);
+      uvec4 four;
       for (int i = 0; i < 4; ++i) {
         int group = half_block * 2 + (i >> 1);
         vec3 rgb = luma[i] + vec3(1.5748 * red[group], -0.18732427 * blue[group] - 0.46812427 * red[group],
                                   1.8556 * blue[group]);
-        imageStore(target, at + ivec2(half_block * 4 + i, row), vec4(clamp(rgb, 0.0, 1.0), coverage[i]));
+        four[i] = packUnorm4x8(vec4(rgb, coverage[i]));
       }
+      texels[word] = four;
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "base/program.h"
+#include "render/gpu/barriers.h"
 #include "shaders/shaders.h"
 
 #include <cstring>
@@ -43,16 +44,20 @@ AtlasTexture::Slot::Slot(const Device& device, Extent2D colors, Extent2D picture
                       .size = picture.area() * 3 / 2,
                       .usage = vk::BufferUsageFlagBits::eStorageBuffer,
                       .residence = Residence::kUpload}),
+      texels(device,
+             {.name = "client atlas texels",
+              .size = colors.area() * 4,
+              .usage = vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferSrc}),
       image(device, {.name = "client atlas",
                      .extent = colors,
                      .format = vk::Format::eR8G8B8A8Unorm,
-                     .usage = vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eSampled}) {}
+                     .usage = vk::ImageUsageFlagBits::eTransferDst | vk::ImageUsageFlagBits::eSampled}) {}
 
 AtlasTexture::AtlasTexture(Device& device, Extent2D colors, bool coverage, std::uint32_t slots)
     : colors_(checked(colors)),
       coverage_(coverage),
       layout_(device, "client atlas",
-              {{0, vk::DescriptorType::eStorageBuffer}, {1, vk::DescriptorType::eStorageImage}}),
+              {{0, vk::DescriptorType::eStorageBuffer}, {1, vk::DescriptorType::eStorageBuffer}}),
       pipeline_(device, ComputeSettings{.name = "atlas from I420",
                                         .shader = shaders::atlas_from_i420_comp,
                                         .layouts = {layout_.handle()},
@@ -64,7 +69,7 @@ AtlasTexture::AtlasTexture(Device& device, Extent2D colors, bool coverage, std::
   for (std::uint32_t i = 0; i < slots; ++i) {
     slots_.push_back(std::make_unique<Slot>(device, colors_, picture_extent()));
     sets_.write(i, 0, slots_[i]->planes);
-    sets_.write(i, 1, slots_[i]->image);
+    sets_.write(i, 1, slots_[i]->texels);
   }
 }
 
@@ -91,10 +96,15 @@ std::uint32_t AtlasTexture::upload(const I420Planes& picture) {
   // Command buffers rotate with the slots: once begin() returns, the slot's last upload is over.
   const vk::raii::CommandBuffer& commands = context_.begin();
   copy_planes(picture, slot.planes);
-  use_image(commands, slot.image, ImageUse::kStorageInCompute);
   pipeline_.bind(commands, {sets_.handle(index)});
   pipeline_.push(commands, PictureConstants{colors_.width, colors_.height});
   commands.dispatch(group_count(colors_.width / 8, 8), group_count(colors_.height / 2, 8), 1);
+  shaders_to_transfer(commands);
+  use_image(commands, slot.image, ImageUse::kTransferTarget);
+  const vk::BufferImageCopy region{
+      .imageSubresource = {.aspectMask = vk::ImageAspectFlagBits::eColor, .layerCount = 1},
+      .imageExtent = {colors_.width, colors_.height, 1}};
+  commands.copyBufferToImage(slot.texels.handle(), slot.image.handle(), slot.image.layout(), region);
   use_image(commands, slot.image, ImageUse::kSampledInFragment);
   context_.submit();
   return index;

@@ -45,6 +45,7 @@ class AtlasTexture {
  private:
   struct Slot {
     Buffer planes;
+    Buffer texels;  ///< converted; a copy to the image is far cheaper on a CPU than image stores
     Image image;
     Slot(const Device& device, Extent2D colors, Extent2D picture);
   };
