@@ -15,7 +15,7 @@ struct SessionSettings {
   proto::ClientHello hello;
   std::uint32_t ssrc = 1;                               ///< of our RTCP; random
   std::string cname = "atlas-client";                   ///< of our RTCP
-  Duration answer_timeout = std::chrono::seconds(20);   ///< from the hello to the answer
+  Duration answer_timeout = std::chrono::seconds(10);   ///< from the hello to the answer
   Duration datagram_timeout = std::chrono::seconds(5);  ///< from the answer to the first datagram
   Duration silence_timeout = std::chrono::seconds(5);   ///< without a byte from the server
   Duration report_interval = std::chrono::seconds(1);   ///< RTCP and StatsReport

@@ -178,7 +178,7 @@ TEST(Session, LosesPatienceWithASilentListener) {
   World w;
   w.server.answers = false;
   w.run(seconds(30));
-  expect_end(w, Kind::kNoAnswer, "did not answer within 20.0 s");
+  expect_end(w, Kind::kNoAnswer, "did not answer within 10.0 s");
   EXPECT_EQ(exit_code(w.session.end()->kind), ExitCode::kCannotConnect);
 }
 
