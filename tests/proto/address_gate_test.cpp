@@ -101,6 +101,20 @@ TEST(AddressGate, AFloodOfStrangersCannotPushOutWhoeverShowsTheToken) {
   EXPECT_TRUE(gate.on_confirm(kHome, kConfirmSize, kToken, *nonce, at(2s)));
 }
 
+TEST(AddressGate, StrangersReplaceStrangersAndNeverFourWhoShowTheToken) {
+  AddressGate gate(kToken);
+  const auto stranger = [](std::uint16_t port) { return ipv4_address({1, 2, 3, 4}, port); };
+  ASSERT_TRUE(gate.on_datagram(kHome, kProbeSize, kToken, secret(1), at(0s)));
+  for (std::uint16_t port = 1; port < 10; ++port) {
+    EXPECT_TRUE(gate.on_datagram(stranger(port), 500, std::nullopt, secret(9), at(1s * port))) << port;
+  }
+  for (std::uint16_t port = 21; port < 24; ++port) {
+    ASSERT_TRUE(gate.on_datagram(stranger(port), kProbeSize, kToken, secret(2), at(10s)));
+  }
+  EXPECT_FALSE(gate.on_datagram(stranger(30), 500, std::nullopt, secret(9), at(10s)));
+  EXPECT_TRUE(gate.on_confirm(kHome, kConfirmSize, kToken, secret(1), at(10s)));
+}
+
 TEST(UdpGreeter, ProbesUntilSomethingComesBack) {
   UdpGreeter greeter(SessionId{3}, kToken);
   EXPECT_EQ(greeter.poll(at(0s)).value().token, kToken);

@@ -305,6 +305,17 @@ TEST(FrameAssembler, AFrameWithABrokenPayloadIsLost) {
   EXPECT_TRUE(s.assembler.needs_refresh());
 }
 
+TEST(FrameAssembler, PacketsThatDisagreeMakeNoFrame) {
+  for (const std::size_t octet : {4U, 20U}) {  // timestamp, frame id
+    Stream s;
+    auto packets = s.make(true);
+    packets[1][octet] ^= std::byte{1};
+    s.give(packets, at(0ms));
+    EXPECT_EQ(s.take(), Ids{}) << octet;
+    EXPECT_EQ(s.assembler.counts().lost, 1U);
+  }
+}
+
 TEST(FrameAssembler, TheDecodersFailureClosesTheGate) {
   Stream s;
   s.give(s.make(true), at(0ms));

@@ -85,18 +85,27 @@ TEST(Rtp, ComesBackAsSent) {
 }
 
 TEST(Rtp, SkipsCsrcListsUnknownExtensionsAndPadding) {
-  const auto got =
-      parse_rtp(from_hex("b2600001 00000002 00000003 aaaaaaaa bbbbbbbb"
-                         "bede0003 52010203 00 13000000 07 f0 00"
-                         "41 42 00 0003"));
+  const ByteBuffer datagram = from_hex(
+      "b2600001 00000002 00000003 aaaaaaaa bbbbbbbb"
+      "bede0003 52010203 00 13000000 07 f0 00"
+      "41 42 00 0003");
+  const auto got = parse_rtp(datagram);
   ASSERT_TRUE(got.has_value());
   EXPECT_EQ(got->header.extensions.frame, FrameId{7});
   EXPECT_EQ(to_hex(got->payload), "4142");
 }
 
 TEST(Rtp, SkipsOtherExtensionProfiles) {
-  const auto got = parse_rtp(from_hex("90600001 00000002 00000003 10000001 13000000 41"));
+  const ByteBuffer datagram = from_hex("90600001 00000002 00000003 10000001 13000000 41");
+  const auto got = parse_rtp(datagram);
   EXPECT_FALSE(got.value().header.extensions.frame);
+  EXPECT_EQ(to_hex(got->payload), "41");
+}
+
+TEST(Rtp, StopsAtExtensionIdFifteenAndKeepsWhatCameBefore) {
+  const ByteBuffer datagram = from_hex("90600001 00000002 00000003 bede0002 1300000007 ff0000 41");
+  const auto got = parse_rtp(datagram);
+  EXPECT_EQ(got.value().header.extensions.frame, FrameId{7});
   EXPECT_EQ(to_hex(got->payload), "41");
 }
 
