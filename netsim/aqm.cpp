@@ -78,6 +78,11 @@ void Pie::update(const QueueModel& model, Duration queue_delay) {
   }
 }
 
+bool Pie::settled() const {
+  return probability_ == 0 && old_delay_ == Duration::zero() &&
+         burst_allowance_ == std::chrono::milliseconds(150);
+}
+
 bool Pie::drop(const QueueModel& model, std::uint64_t backlog, Duration queue_delay) {
   const double draw = random_.uniform();
   if (burst_allowance_ > Duration::zero()) return false;

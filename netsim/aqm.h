@@ -36,6 +36,8 @@ class Pie {
   /// A packet of `size` octets arrives while `backlog` octets wait: drop (or mark) it?
   bool drop(const QueueModel& model, std::uint64_t backlog, Duration queue_delay);
   [[nodiscard]] double probability() const { return probability_; }
+  /// Further updates with an empty queue would change nothing.
+  [[nodiscard]] bool settled() const;
 
  private:
   Random random_;

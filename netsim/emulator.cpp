@@ -87,6 +87,27 @@ std::optional<Time> Emulator::next_event() const {
   return next;
 }
 
+std::optional<Time> Emulator::next_arrival() const {
+  const auto up = path_.link(Direction::kUp).next_arrival();
+  const auto down = path_.link(Direction::kDown).next_arrival();
+  return !up || !down ? (up ? up : down) : std::min(*up, *down);
+}
+
+std::size_t Emulator::stream_room(Direction direction) const {
+  const Link& link = path_.link(direction);
+  std::uint64_t half = (link.backlog() + link.room()) / 2;
+  if (link.backlog() == 0) half = std::max<std::uint64_t>(half, StreamLink::kSegmentOctets);
+  return half > link.backlog() ? half - link.backlog() : 0;
+}
+
+void Emulator::finish() {
+  for (const Direction d : kDirections) {
+    streams(d).clear();
+    path_.link(d).finish();
+    sort_decisions(d);
+  }
+}
+
 std::vector<Delivery> Emulator::deliver(Time now) {
   for (const Direction d : kDirections) advance(d, now);
   return std::exchange(out_, {});

@@ -46,8 +46,17 @@ class Emulator {
   [[nodiscard]] std::optional<Time> next_event() const;
   /// What has come out by `now`, in order of arrival within each direction.
   std::vector<Delivery> deliver(Time now);
+  /// When something next comes out, as far as is known; empty: nothing is past the bottleneck.
+  [[nodiscard]] std::optional<Time> next_arrival() const;
+  /// Octets that streams may add now to the queue of `direction`, which they fill no further than half: the
+  /// congestion control that keeps a stream from losing its own segments.
+  [[nodiscard]] std::size_t stream_room(Direction direction) const;
+  /// The run is over: decides what waits (Link::finish); streams are forgotten.
+  void finish();
   /// Decisions since the last call.
   std::vector<DirectedDecision> take_decisions();
+  /// `tap` hears of every decision in `direction`.
+  void set_tap(Direction direction, Tap* tap) { path_.link(direction).set_tap(tap); }
   /// Segments of streams that had to be sent again.
   [[nodiscard]] std::uint64_t stream_repeats() const { return stream_repeats_; }
 

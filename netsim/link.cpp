@@ -29,6 +29,8 @@ const char* fate_name(Fate fate) {
       return "early_drop";
     case Fate::kExpired:
       return "expired";
+    case Fate::kUnsent:
+      return "unsent";
   }
   return "unknown";
 }
@@ -41,12 +43,14 @@ Link::Link(LinkProfile profile, std::uint64_t seed, Time start)
       delay_(seed ^ 0x64656C61ULL),
       air_(seed ^ 0x616972ULL),
       pie_(seed ^ 0x706965ULL),
-      next_pie_update_(start + Pie::kUpdatePeriod) {
+      next_pie_update_(start + Pie::kUpdatePeriod),
+      last_sent_(start) {
   AW_ASSERT(!profile_.steps.empty());
 }
 
 std::uint64_t Link::send(ByteBuffer payload, Time now, FlowId flow, bool ecn_capable) {
   advance(now);
+  last_sent_ = now;
   const LinkParameters& p = parameters();
   Waiting packet;
   packet.decision.packet = packets_++;
@@ -92,8 +96,13 @@ bool Link::admit(Waiting& packet, Time now) {
   }
   if (fate == Fate::kDelivered) return true;
   packet.decision.fate = fate;
-  decisions_.push_back(packet.decision);
+  decide(packet.decision, packet.payload);
   return false;
+}
+
+void Link::decide(const Decision& decision, ByteView payload) {
+  decisions_.push_back(decision);
+  if (tap_) tap_->decided(decision, payload);
 }
 
 Duration Link::head_delay(Time now) const {
@@ -104,7 +113,7 @@ void Link::drop_front(Fate fate, Time at) {
   Waiting& head = queue_.front();
   head.decision.fate = fate;
   head.decision.left_queue = at;
-  decisions_.push_back(head.decision);
+  decide(head.decision, head.payload);
   backlog_ -= head.octets;
   queue_.pop_front();
 }
@@ -128,6 +137,25 @@ std::optional<Time> Link::next_event() const {
   if (!in_flight_.empty())
     next = next ? std::min(*next, in_flight_.front().arrival) : in_flight_.front().arrival;
   return next;
+}
+
+std::optional<Time> Link::next_arrival() const {
+  return in_flight_.empty() ? std::nullopt : std::optional(in_flight_.front().arrival);
+}
+
+std::uint64_t Link::room() const {
+  const std::uint64_t limit = parameters().queue.limit.count;
+  return limit > backlog_ ? limit - backlog_ : 0;
+}
+
+void Link::finish() {
+  const Time end = last_sent_ + std::chrono::hours(24);
+  while (!queue_.empty()) {
+    const auto next = next_internal();
+    if (!next || *next > end) break;
+    advance(*next);
+  }
+  while (!queue_.empty()) drop_front(Fate::kUnsent, queue_.front().decision.arrived);
 }
 
 void Link::enter_next_step() {
@@ -156,6 +184,10 @@ void Link::advance(Time to) {
     } else if (pie_due && pie_at <= service_at) {
       pie_.update(parameters().queue, head_delay(pie_at));
       next_pie_update_ += Pie::kUpdatePeriod;
+      const Duration idle = std::min(to, step_at) - next_pie_update_;
+      if (queue_.empty() && pie_.settled() && idle > Duration::zero()) {
+        next_pie_update_ += idle / Pie::kUpdatePeriod * Pie::kUpdatePeriod;
+      }
     } else if (service_due) {
       serve_head(*service);
     } else {
@@ -193,7 +225,7 @@ void Link::propagate(Waiting packet, Time left) {
   decision.left_queue = left;
   if (packet.lost) {
     decision.fate = Fate::kLost;
-    decisions_.push_back(decision);
+    decide(decision, packet.payload);
     return;
   }
   if (decision.corrupted) {
@@ -210,7 +242,7 @@ void Link::propagate(Waiting packet, Time left) {
 }
 
 void Link::launch(const Waiting& packet, Decision decision) {
-  decisions_.push_back(decision);
+  decide(decision, packet.payload);
   in_flight_.push_back(
       {decision.delivered,
        launches_++,

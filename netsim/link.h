@@ -14,6 +14,14 @@
 
 namespace atlaswire::netsim {
 
+/// Told of every decision as it becomes final, with the packet's octets as they entered (or, when corrupted,
+/// as they leave). For recordings.
+class Tap {
+ public:
+  virtual ~Tap() = default;
+  virtual void decided(const Decision& decision, ByteView payload) = 0;
+};
+
 /// One direction of an emulated path: queue, then serialize, then propagate.
 /// No sockets, threads or clock: time enters as `now`, chance as `seed`, so equal inputs give equal
 /// deliveries, byte for byte, however often or seldom the caller looks. `now` must never decrease.
@@ -33,6 +41,15 @@ class Link {
   std::vector<Datagram> deliver(Time now);
   /// Decisions made final since the last call, in the order they became so.
   std::vector<Decision> take_decisions();
+  /// `tap` (borrowed; null for none) hears of every decision from now on.
+  void set_tap(Tap* tap) { tap_ = tap; }
+  /// When what is in flight next arrives; empty: nothing is past the bottleneck.
+  [[nodiscard]] std::optional<Time> next_arrival() const;
+  /// Nothing will be sent any more: decides every waiting packet, running on for at most a day after the last
+  /// `send`; what the rate has not let through by then is unsent.
+  void finish();
+  /// Octets the queue has room for, overhead included.
+  [[nodiscard]] std::uint64_t room() const;
   /// Octets waiting for the bottleneck, overhead included.
   [[nodiscard]] std::uint64_t backlog() const { return backlog_; }
 
@@ -61,6 +78,7 @@ class Link {
   void serve_head(const Service& service);
   void propagate(Waiting packet, Time left);
   void launch(const Waiting& packet, Decision decision);
+  void decide(const Decision& decision, ByteView payload);
   void drop_front(Fate fate, Time at);
   bool admit(Waiting& packet, Time now);
 
@@ -78,8 +96,10 @@ class Link {
   std::uint64_t backlog_ = 0;
   std::vector<InFlight> in_flight_;  ///< heap by (arrival, order)
   std::vector<Decision> decisions_;
+  Tap* tap_ = nullptr;
   std::uint64_t packets_ = 0;
   std::uint64_t launches_ = 0;
+  Time last_sent_;
   Time last_arrival_{Duration::min()};
 };
 

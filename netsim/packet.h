@@ -17,6 +17,7 @@ enum class Fate : std::uint8_t {
   kQueueFull,  ///< tail or head drop: the queue was at its bound
   kEarlyDrop,  ///< by CoDel or PIE
   kExpired,    ///< waited longer than the queue's time limit
+  kUnsent,     ///< still waiting for the bottleneck when the run was finished
 };
 /// Stable lower-case name, for logs.
 const char* fate_name(Fate fate);

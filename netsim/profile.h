@@ -110,13 +110,23 @@ Result<Profile> load_profile(const std::string& name_or_file);
 
 /// Names of the shipped profiles, ascending.
 std::vector<std::string> shipped_profiles();
+/// The TOML text of a shipped profile; empty: no such name.
+std::string_view shipped_profile_text(std::string_view name);
 
 /// mahimahi's format: one line a packet opportunity, whole milliseconds, not descending. The period is
 /// the last line's time; it must be positive.
 Result<RateModel> parse_trace(std::string_view text);
 
 /// Why a profile or trace cannot be used.
-enum class ProfileError { kSyntax = 1, kUnknownKey, kOutOfRange, kUnknownName, kCannotRead, kBadTrace };
+enum class ProfileError {
+  kSyntax = 1,
+  kUnknownKey,
+  kOutOfRange,
+  kUnknownName,
+  kCannotRead,
+  kBadTrace,
+  kBadLog
+};
 const char* error_text(ProfileError e);
 
 }  // namespace atlaswire::netsim

@@ -60,6 +60,8 @@ const char* error_text(ProfileError e) {
       return "cannot be read";
     case ProfileError::kBadTrace:
       return "not a packet delivery trace";
+    case ProfileError::kBadLog:
+      return "not a decision log";
   }
   return "unknown profile error";
 }
