@@ -1,4 +1,4 @@
-// Punctual lights of a chunk (KHR_lights_punctual): inverse square falloff, windowed at the light's range.
+// Punctual lights (KHR_lights_punctual): inverse square falloff, windowed at the light's range.
 #ifndef ATLASWIRE_SHADERS_LIGHTS_GLSL
 #define ATLASWIRE_SHADERS_LIGHTS_GLSL
 
@@ -6,7 +6,7 @@
 #include "shaders/octahedral.glsl"
 
 // Without branches: on a CPU they save nothing but a loop's last turn.
-vec3 light_contribution(LightConstants light, Reflectance surface, vec3 position, vec3 normal, vec3 to_viewer) {
+vec3 light_contribution(LightConstants light, Reflectance surface, vec3 position, vec3 normal, vec3 plane, vec3 to_viewer) {
   vec2 blue_and_range = unpackHalf2x16(light.color_b_inverse_range);
   vec3 towards = light.position - position;
   float distance2 = max(dot(towards, towards), 1e-4);
@@ -19,14 +19,18 @@ vec3 light_contribution(LightConstants light, Reflectance surface, vec3 position
     float inside = clamp(dot(to_light, unpack_normal(light.axis)) * cone.x + cone.y, 0.0, 1.0);
     strength *= inside * inside;
   }
+  // A bent normal must not catch light from behind its surface.
+  if (has(kFeatureNormalMap)) strength *= clamp(dot(plane, to_light) * 16.0, 0.0, 1.0);
   vec3 color = vec3(unpackHalf2x16(light.color_rg), blue_and_range.x);
   return color * (strength * reflect_light(surface, to_viewer, to_light, max(dot(normal, to_light), 0.0)));
 }
 
-vec3 punctual_lights(Reflectance surface, vec3 position, vec3 normal, vec3 to_viewer) {
+// Those of the list that begins at `list` (render/passes/light_table.h). `plane`: the normal before bending.
+vec3 punctual_lights(uint list, Reflectance surface, vec3 position, vec3 normal, vec3 plane, vec3 to_viewer) {
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < draw.light_count; ++i) {
-    sum += light_contribution(lights[light_list[draw.first_light + i]], surface, position, normal, to_viewer);
+  uint count = light_lists[list];
+  for (uint i = 1u; i <= count; ++i) {
+    sum += light_contribution(lights[light_lists[list + i]], surface, position, normal, plane, to_viewer);
   }
   return sum;
 }

@@ -11,7 +11,7 @@ layout(push_constant) uniform Draw { DrawConstants draw; };
 
 layout(set = 0, binding = 0) uniform Constants { SceneConstants scene; };
 layout(set = 0, binding = 1) uniform Lights { LightConstants lights[kMaxLights]; };
-layout(set = 0, binding = 2, std430) readonly buffer LightList { uint light_list[]; };
+layout(set = 0, binding = 2, std430) readonly buffer LightLists { uint light_lists[]; };
 layout(set = 0, binding = 3) uniform sampler2DShadow shadow_map;
 
 layout(set = 1, binding = 0) uniform MaterialBlock { MaterialConstants material; };
@@ -34,6 +34,7 @@ struct SurfacePoint {
   vec3 normal;
   vec4 tangent;  // w: handedness
   vec2 uv;
+  uint light_list;
 };
 
 // Towards the camera's side for double-sided materials. The triangle's own plane decides, oriented as the
@@ -92,7 +93,7 @@ vec4 evaluate_material(SurfacePoint point) {
       radiance += scene.sun_color.rgb * lit * reflect_light(surface, to_viewer, scene.to_sun.xyz, n_dot_l);
     }
   }
-  if (has(kFeatureLights)) radiance += punctual_lights(surface, point.position, normal, to_viewer);
+  if (has(kFeatureLights)) radiance += punctual_lights(point.light_list, surface, point.position, normal, geometric, to_viewer);
   if (has(kFeatureEmissive)) {
     vec3 emitted = material.emissive.rgb;
     if (has(kFeatureEmissiveTexture)) emitted *= texture(emissive_texture, point.uv).rgb;

@@ -43,8 +43,8 @@ struct DrawConstants {
   vec4 camera_high;         // camera relative to the scene's origin, rounded to float
   vec4 camera_low;          // what that rounding lost
   vec2 clip_from_texel;     // 2 / atlas extent, of the shading pass
-  uint first_light;         // into the light lists
-  uint light_count;
+  uint light_list;          // where the chunk's begins, of the forward pass
+  uint unused;
 };
 
 /// What all of a scene's surfaces share.

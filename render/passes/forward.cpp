@@ -18,8 +18,7 @@ gpu_layout::DrawConstants draw_constants(const RelativeCamera& camera) {
           .camera_high = camera.high,
           .camera_low = camera.low,
           .clip_from_texel = {0.0F, 0.0F},
-          .first_light = 0,
-          .light_count = 0};
+          .light_list = 0};
 }
 
 std::vector<std::uint32_t> count_triangles(const Scene& scene) {
@@ -136,9 +135,7 @@ void ForwardPass::draw_scene(const vk::raii::CommandBuffer& commands, const Came
     const std::size_t material = scene.chunks[chunk].material;
     pipelines_.bind(commands, material, bound);
     bound = material;
-    const auto lights = scene_->lights_of(chunk);
-    constants.first_light = lights.first;
-    constants.light_count = lights.count;
+    constants.light_list = scene_->lights().of_chunk[chunk];
     pipelines_.push(commands, constants);
     commands.drawIndexed(triangles * 3, 1, first_triangle * 3, 0, 0);
   };

@@ -1,9 +1,13 @@
 #include "render/passes/light_table.h"
 
 #include <algorithm>
+#include <array>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/packing.hpp>
 #include <limits>
 #include <numeric>
+#include <span>
 
 namespace atlaswire::render {
 namespace {
@@ -31,6 +35,55 @@ gpu_layout::LightConstants constants_of(const PunctualLight& light) {
           .cone_scale_offset = halves(scale, offset)};
 }
 
+/// What of a patch lights meet.
+struct PatchReach {
+  Box box;
+  std::array<glm::vec3, kMaxPatchCorners> positions{};
+  std::array<glm::vec3, kMaxPatchCorners> normals{};
+  std::uint32_t corners = 0;
+  bool both_sides = false;
+};
+
+PatchReach reach_of(const Scene& scene, const Patch& patch) {
+  PatchReach reach;
+  reach.corners = corner_count(patch.triangles);
+  reach.both_sides = scene.materials[patch.material].draw.double_sided;
+  for (std::uint32_t i = 0; i < reach.corners; ++i) {
+    const ShadingVertex& v = scene.vertices[patch.vertices[i]];
+    reach.positions[i] = v.position;
+    reach.normals[i] = unpack_normal(v.normal);
+    reach.box.low = i == 0 ? v.position : glm::min(reach.box.low, v.position);
+    reach.box.high = i == 0 ? v.position : glm::max(reach.box.high, v.position);
+  }
+  return reach;
+}
+
+/// Inside, normal and position are mixes of the corners': if no corner's normal faces the light from any
+/// corner's position, none in between does.
+bool reaches(const PunctualLight& light, const PatchReach& patch) {
+  const glm::vec3 away = glm::clamp(light.position, patch.box.low, patch.box.high) - light.position;
+  if (glm::dot(away, away) >= light.range * light.range) return false;
+  if (patch.both_sides) return true;
+  for (std::uint32_t n = 0; n < patch.corners; ++n) {
+    for (std::uint32_t p = 0; p < patch.corners; ++p) {
+      if (glm::dot(patch.normals[n], light.position - patch.positions[p]) > 0.0F) return true;
+    }
+  }
+  return false;
+}
+
+/// Where a list is, appended unless it is empty or equals the one at `last`.
+std::uint32_t append(std::vector<std::uint32_t>& lists, const std::vector<std::uint32_t>& list,
+                     std::uint32_t last) {
+  if (list.empty()) return 0;
+  if (lists[last] == list.size() && std::equal(list.begin(), list.end(), lists.begin() + last + 1))
+    return last;
+  const auto at = static_cast<std::uint32_t>(lists.size());
+  lists.push_back(static_cast<std::uint32_t>(list.size()));
+  lists.insert(lists.end(), list.begin(), list.end());
+  return at;
+}
+
 }  // namespace
 
 LightTable make_light_table(const Scene& scene) {
@@ -52,13 +105,24 @@ LightTable make_light_table(const Scene& scene) {
     table.lights.push_back(constants_of(scene.lights[light]));
     table.spots = table.spots || is_spot(scene.lights[light]);
   }
+  std::vector<std::uint32_t> list;
   for (const Chunk& chunk : scene.chunks) {
-    const auto first = static_cast<std::uint32_t>(table.list.size());
-    for (std::uint32_t i = 0; i < chunk.light_count; ++i) {
-      const std::uint32_t at = place[scene.light_lists[chunk.first_light + i]];
-      if (at != kDropped) table.list.push_back(at);
+    const auto reaching = std::span(scene.light_lists).subspan(chunk.first_light, chunk.light_count);
+    list.clear();
+    for (const std::uint32_t light : reaching) {
+      if (place[light] != kDropped) list.push_back(place[light]);
     }
-    table.chunk_ranges.push_back({first, static_cast<std::uint32_t>(table.list.size()) - first});
+    std::uint32_t last = append(table.lists, list, 0);
+    table.of_chunk.push_back(last);
+    for (std::uint32_t p = chunk.first_patch; p < chunk.first_patch + chunk.patch_count; ++p) {
+      list.clear();
+      const PatchReach patch = reach_of(scene, scene.patches[p]);
+      for (const std::uint32_t light : reaching) {
+        if (place[light] != kDropped && reaches(scene.lights[light], patch)) list.push_back(place[light]);
+      }
+      last = append(table.lists, list, last);
+      table.of_patch.push_back(last);
+    }
   }
   return table;
 }

@@ -8,21 +8,23 @@
 
 namespace atlaswire::render {
 
-/// A scene's lights as the shaders read them: at most gpu_layout::kMaxLights, and each chunk's list as
-/// indices into them.
+/// A scene's lights as the shaders read them: at most gpu_layout::kMaxLights, and lists of those that reach
+/// each chunk (for the forward pass) and each patch (for the shading pass, which draws patches anyway).
 struct LightTable {
-  struct Range {
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;
-  };
   std::vector<gpu_layout::LightConstants> lights;
-  std::vector<std::uint32_t> list;
-  std::vector<Range> chunk_ranges;  ///< into `list`, one a chunk
-  std::uint32_t dropped = 0;        ///< lights left out
-  bool spots = false;               ///< any of them is a spot light
+  /// Lists behind each other, each its count and then indices into `lights`; an empty one comes first.
+  std::vector<std::uint32_t> lists{0};
+  std::vector<std::uint32_t> of_chunk;  ///< where in `lists` each chunk's begins
+  std::vector<std::uint32_t> of_patch;  ///< and each patch's
+  std::uint32_t dropped = 0;            ///< lights left out
+  bool spots = false;                   ///< any of them is a spot light
+
+  /// Some list names a light.
+  [[nodiscard]] bool used() const { return lists.size() > 1; }
 };
 
-/// Packs them. Of more lights than fit, those of greatest intensity times range stay.
+/// Packs them. Of more lights than fit, those of greatest intensity times range stay. A patch's list leaves
+/// out only lights that add exactly nothing to it: out of range, or behind all of its interpolated normals.
 LightTable make_light_table(const Scene& scene);
 
 }  // namespace atlaswire::render

@@ -23,9 +23,10 @@ GraphicsSettings atlas_settings(const SceneGpu& scene, std::uint32_t features) {
   GraphicsSettings s = common_settings(scene, features);
   s.name = "shading " + std::to_string(features);
   s.vertex = shaders::shading_vert;
-  s.vertex_bindings = {{.binding = 0, .stride = 12}};
+  s.vertex_bindings = {{.binding = 0, .stride = 16}};
   s.vertex_attributes = {{.location = 0, .binding = 0, .format = vk::Format::eR32Uint, .offset = 0},
-                         {.location = 1, .binding = 0, .format = vk::Format::eR32G32Sfloat, .offset = 4}};
+                         {.location = 1, .binding = 0, .format = vk::Format::eR32Uint, .offset = 4},
+                         {.location = 2, .binding = 0, .format = vk::Format::eR32G32Sfloat, .offset = 8}};
   return s;
 }
 

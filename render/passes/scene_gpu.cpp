@@ -124,7 +124,7 @@ std::uint32_t features_of(const Material& m, const Scene& scene, const LightTabl
          bit(m.draw.alpha == PatchClass::Alpha::kMask, kFeatureAlphaMask) |
          bit(m.draw.alpha == PatchClass::Alpha::kBlend, kFeatureAlphaBlend) |
          bit(m.draw.double_sided, kFeatureDoubleSided) | bit(has_sun(scene), kFeatureSun) |
-         bit(!lights.list.empty(), kFeatureLights) | bit(!lights.list.empty() && lights.spots, kFeatureSpots);
+         bit(lights.used(), kFeatureLights) | bit(lights.used() && lights.spots, kFeatureSpots);
 }
 
 std::vector<Binding> scene_bindings() {
@@ -166,7 +166,7 @@ SceneGpu::SceneGpu(Device& device, std::shared_ptr<const Scene> scene)
       light_buffer_(upload_small(device, "lights", std::as_bytes(std::span(lights_.lights)),
                                  gpu_layout::kMaxLights * sizeof(gpu_layout::LightConstants),
                                  Usage::eUniformBuffer)),
-      light_list_(upload_small(device, "light lists", std::as_bytes(std::span(lights_.list)), 0,
+      light_list_(upload_small(device, "light lists", std::as_bytes(std::span(lights_.lists)), 0,
                                Usage::eStorageBuffer)),
       textures_(context_, scene_->textures),
       shadow_map_(device, {.name = "shadow map",

@@ -29,8 +29,8 @@ class SceneGpu {
   [[nodiscard]] const Buffer& indices() const { return indices_; }
   /// Patch of each triangle, 32-bit.
   [[nodiscard]] const Buffer& triangle_patch() const { return triangle_patch_; }
-  /// The lights that reach a chunk, for DrawConstants.
-  [[nodiscard]] LightTable::Range lights_of(std::size_t chunk) const { return lights_.chunk_ranges[chunk]; }
+  /// Which lights reach what.
+  [[nodiscard]] const LightTable& lights() const { return lights_; }
   /// The vertex that completes a one-triangle patch to a parallelogram: what texels beyond its longest side
   /// are shaded with, so that filtering along that side finds the triangle's own plane.
   [[nodiscard]] std::uint32_t fourth_corner(PatchId patch) const;

@@ -13,10 +13,11 @@ namespace {
 /// A patch's corner in the atlas: what shaders/shading.vert reads.
 struct Corner {
   std::uint32_t vertex;
+  std::uint32_t light_list;
   float x;
   float y;
 };
-static_assert(sizeof(Corner) == 12);
+static_assert(sizeof(Corner) == 16);
 
 /// Corners of a block's patch as rasterised. The client interpolates between the centres of a block's outer
 /// texels (corner_texel), so attributes are exact there; but a triangle that ends on texel centres loses
@@ -37,9 +38,9 @@ struct BlockFrame {
         span_y(high_edge(b.height()) - low_y),
         transposed(b.transposed) {}
 
-  [[nodiscard]] Corner corner(std::uint32_t vertex, float u, float v) const {
+  [[nodiscard]] Corner corner(std::uint32_t vertex, std::uint32_t light_list, float u, float v) const {
     if (transposed) std::swap(u, v);
-    return {vertex, x + low_x + u * span_x, y + low_y + v * span_y};
+    return {vertex, light_list, x + low_x + u * span_x, y + low_y + v * span_y};
   }
 
   float x, y, low_x, low_y, span_x, span_y;
@@ -110,28 +111,24 @@ std::uint64_t ShadingPass::write_geometry(Frame& frame, std::span<const PlacedPa
   std::uint32_t corner_at = 0;
   std::uint32_t index_at = 0;
   std::uint64_t texels = 0;
-  std::size_t chunk = 0;
   draws_.clear();
   for (const PlacedPatch& placed : patches) {
     const std::uint32_t id = value(placed.patch);
     AW_ASSERT(id < scene.patches.size());
-    const auto past = [&] { return scene.chunks[chunk].first_patch + scene.chunks[chunk].patch_count; };
-    AW_ASSERT(id >= scene.chunks[chunk].first_patch);
-    while (id >= past()) ++chunk;
-    if (draws_.empty() || draws_.back().chunk != chunk) {
-      draws_.push_back({static_cast<std::uint32_t>(chunk), index_at, 0});
-    }
-
     const Patch& patch = scene.patches[id];
+    const std::uint32_t lights = scene_->lights().of_patch[id];
+    if (draws_.empty() || draws_.back().material != patch.material) {
+      draws_.push_back({patch.material, index_at, 0});
+    }
     const BlockFrame place(placed.block);
     const std::uint32_t first_corner = corner_at;
     for (std::uint32_t c = 0; c < corner_count(patch.triangles); ++c) {
       const auto [u, v] = corner_coordinate(patch.triangles, c);
-      corners[corner_at++] = place.corner(patch.vertices[c], u, v);
+      corners[corner_at++] = place.corner(patch.vertices[c], lights, u, v);
     }
     std::uint32_t triangles = patch.triangles;
     if (triangles == 1) {
-      corners[corner_at++] = place.corner(scene_->fourth_corner(placed.patch), 1.0F, 1.0F);
+      corners[corner_at++] = place.corner(scene_->fourth_corner(placed.patch), lights, 1.0F, 1.0F);
       for (const std::uint32_t c : {0U, 1U, 2U, 2U, 1U, 3U}) indices[index_at++] = first_corner + c;
     } else {
       for (std::uint32_t t = 0; t < triangles; ++t) {
@@ -157,13 +154,9 @@ void ShadingPass::draw(const vk::raii::CommandBuffer& commands, const Frame& fra
   commands.bindIndexBuffer(frame.indices->handle(), 0, vk::IndexType::eUint32);
   std::size_t bound = MaterialPipelines::kNone;
   for (const Draw& d : draws_) {
-    const std::size_t material = scene.chunks[d.chunk].material;
-    pipelines_.bind(commands, material, bound);
-    bound = material;
-    const auto lights = scene_->lights_of(d.chunk);
-    constants.first_light = lights.first;
-    constants.light_count = lights.count;
-    pipelines_.push(commands, constants);
+    pipelines_.bind(commands, d.material, bound);
+    if (bound == MaterialPipelines::kNone) pipelines_.push(commands, constants);
+    bound = d.material;
     commands.drawIndexed(d.index_count, 1, d.first_index, 0, 0);
   }
 }

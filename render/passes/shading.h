@@ -35,9 +35,9 @@ class ShadingPass {
     std::optional<Buffer> corners;
     std::optional<Buffer> indices;
   };
-  /// Patches of one chunk in the index buffer.
+  /// Patches of one material in the index buffer.
   struct Draw {
-    std::uint32_t chunk = 0;
+    std::size_t material = 0;
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;
   };
