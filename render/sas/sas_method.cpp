@@ -60,6 +60,8 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
       selector_(level_settings(settings_), static_cast<std::uint32_t>(scene_->patches.size())),
       allocator_(
           make_sequential_allocator(settings_.allocator, static_cast<std::uint32_t>(scene_->patches.size()))),
+      freed_(settings_.atlas, settings_.allocator.min_block_log2,
+             static_cast<std::uint32_t>(scene_->patches.size())),
       shading_(device, scene_gpu_, settings_.atlas, settings_.frames_in_flight),
       conversion_(device, shading_.atlas(), scene_->requirements.alpha(), settings_.frames_in_flight),
       timer_(device, "sas timer", 2),
@@ -73,7 +75,8 @@ RenderedFrame SasMethod::render(const FrameRequest& request) {
   const Time found = steady_now();
   const LevelStats& levels = selector_.select(visibility_.levels(), requests_);
   const LayoutChange& change = allocator_->update(requests_, request.intra);
-  choose_stale(change, request.intra);
+  freed_.apply(change);
+  choose_stale(change);
   const Time placed = steady_now();
   const std::uint32_t slot = frames_ % settings_.frames_in_flight;
   frame.timings.visibility = found - start;
@@ -93,9 +96,9 @@ void SasMethod::find_visible(const FrameRequest& request) {
   context_.wait(context_.submit());
 }
 
-void SasMethod::choose_stale(const LayoutChange& change, bool all) {
+void SasMethod::choose_stale(const LayoutChange& change) {
   stale_ = allocator_->blocks();
-  if (all || settings_.reshade_interval == 1) return;
+  if (settings_.reshade_interval == 1) return;
   auto added = change.added.begin();
   auto moved = change.moved.begin();
   std::erase_if(stale_, [&](const PlacedPatch& placed) {
@@ -106,12 +109,38 @@ void SasMethod::choose_stale(const LayoutChange& change, bool all) {
   });
 }
 
+void SasMethod::clear_freed(const vk::raii::CommandBuffer& commands) {
+  std::vector<vk::ClearRect> rects;
+  for (const TexelRect& r : freed_.take()) {
+    rects.push_back({.rect = {.offset = {static_cast<std::int32_t>(r.x), static_cast<std::int32_t>(r.y)},
+                              .extent = {r.width, r.height}},
+                     .layerCount = 1});
+  }
+  Image& atlas = shading_.atlas();
+  if (rects.empty() || frames_ == 0) return;
+  use_image(commands, atlas, ImageUse::kColorTarget);
+  const vk::RenderingAttachmentInfo color{.imageView = atlas.view(),
+                                          .imageLayout = atlas.layout(),
+                                          .loadOp = vk::AttachmentLoadOp::eLoad,
+                                          .storeOp = vk::AttachmentStoreOp::eStore};
+  commands.beginRendering({.renderArea = {.extent = {atlas.extent().width, atlas.extent().height}},
+                           .layerCount = 1,
+                           .colorAttachmentCount = 1,
+                           .pColorAttachments = &color});
+  commands.clearAttachments(
+      vk::ClearAttachment{.aspectMask = vk::ImageAspectFlagBits::eColor,
+                          .colorAttachment = 0,
+                          .clearValue = vk::ClearColorValue(std::array{0.5F, 0.5F, 0.5F, 0.0F})},
+      rects);
+  commands.endRendering();
+}
+
 std::uint64_t SasMethod::shade(const FrameRequest& request, std::uint32_t slot, RenderTimings& timings) {
   const Time start = steady_now();
   const auto& commands = context_.begin();
   timer_.reset(commands);
-  const std::uint64_t texels =
-      shading_.record(commands, stale_, request.camera.pose.position, request.intra || frames_ == 0);
+  if (request.intra) clear_freed(commands);
+  const std::uint64_t texels = shading_.record(commands, stale_, request.camera.pose.position, frames_ == 0);
   use_image(commands, shading_.atlas(), ImageUse::kSampledInCompute);
   timer_.begin(commands, "conversion");
   conversion_.record(commands, slot);

@@ -8,6 +8,7 @@
 #include "render/passes/scene_gpu.h"
 #include "render/passes/shading.h"
 #include "render/passes/visibility.h"
+#include "render/sas/freed_texels.h"
 
 #include <memory>
 #include <vector>
@@ -19,8 +20,8 @@ namespace atlaswire::render {
 /// with the picture. Equal requests in equal order give equal bytes on one device.
 ///
 /// Blocks that are new or moved are shaded at once, the others every MethodSettings::reshade_interval-th
-/// frame, chunk by chunk in rotation. On intra frames everything is shaded and unused texels are cleared
-/// ([SAS] 4.2).
+/// frame, chunk by chunk in rotation. On intra frames texels that no patch holds any more are cleared to
+/// mid-grey of coverage 0 ([SAS] 4.2), and the allocator may reset.
 class SasMethod final : public Method {
  public:
   SasMethod(Device& device, std::shared_ptr<const Scene> scene, const MethodSettings& settings);
@@ -37,7 +38,8 @@ class SasMethod final : public Method {
 
  private:
   void find_visible(const FrameRequest& request);
-  void choose_stale(const LayoutChange& change, bool all);
+  void choose_stale(const LayoutChange& change);
+  void clear_freed(const vk::raii::CommandBuffer& commands);
   std::uint64_t shade(const FrameRequest& request, std::uint32_t slot, RenderTimings& timings);
 
   MethodSettings settings_;
@@ -46,6 +48,7 @@ class SasMethod final : public Method {
   VisibilityPass visibility_;
   LevelSelector selector_;
   std::unique_ptr<AtlasAllocator> allocator_;
+  FreedTexels freed_;
   ShadingPass shading_;
   I420Pass conversion_;
   GpuTimer timer_;

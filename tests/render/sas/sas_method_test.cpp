@@ -1,6 +1,7 @@
 #include "render/sas/sas_method.h"
 
 #include "base/program.h"
+#include "render/scene/load.h"
 #include "shaders/level_layout.h"
 #include "tests/render/gpu/gpu_fixture.h"
 #include "tests/render/sas/tiny_scene.h"
@@ -165,6 +166,58 @@ TEST_F(Sas, CoveragePlaneLiesBelowTheAtlasOnlyForAlpha) {
   for (const PlacedPatch& p : glass.blocks()) {
     const std::size_t at = (256 + p.block.y) * std::size_t{256} + p.block.x;
     EXPECT_EQ(frame.picture.y[at], 255) << "this glass is opaque";
+  }
+}
+
+TEST_F(Sas, IntraFramesOfAnyIntervalLookTheSameWhereNoPatchIs) {
+  // With an interval, an intra frame shades no more than others; what it leaves must still be clean.
+  const auto scene = corridor(false);
+  MethodSettings settings = small();
+  settings.reshade_interval = 4;
+  SasMethod method(device(), scene, settings);
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    FrameRequest turning = request(i, i % 3 == 0);
+    turning.camera.pose.orientation = glm::angleAxis(0.3 * i, glm::dvec3{0, 1, 0});
+    const RenderedFrame frame = method.render(turning);
+    if (!turning.intra) continue;
+    std::vector<bool> held(256 * 256, false);
+    for (const PlacedPatch& p : method.blocks()) {
+      for (std::uint32_t t = 0; t < p.block.area(); ++t) {
+        held[(p.block.y + t / p.block.width()) * std::size_t{256} + p.block.x + t % p.block.width()] = true;
+      }
+    }
+    std::set<std::uint8_t> unheld;
+    for (std::size_t t = 0; t < held.size(); ++t) {
+      if (!held[t]) unheld.insert(frame.picture.y[t]);
+    }
+    EXPECT_LE(unheld.size(), 1U) << "frame " << i;
+  }
+}
+
+TEST_F(Sas, AtriumRunsCleanAndRepeats) {
+  auto loaded = load_scene("atrium:0.05");
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().message();
+  const auto scene = std::make_shared<const Scene>(std::move(*loaded));
+  MethodSettings settings;
+  settings.atlas = {512, 512};
+  settings.reshade_interval = 2;
+  SasMethod a(device(), scene, settings);
+  SasMethod b(device(), scene, settings);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    FrameRequest r{.frame = FrameId{i}, .intra = i == 0};
+    r.camera.extent = {320, 180};
+    r.camera.pose = scene->start;
+    r.camera.pose.position.x += 0.1 * i;
+    r.camera.pose.angular_velocity = {0, 0.5, 0};
+    r.cover = std::chrono::milliseconds(50);
+    const RenderedFrame frame = a.render(r);
+    const auto picture = planes(frame.picture);
+    EXPECT_EQ(picture, planes(b.render(r).picture)) << "frame " << i;
+    EXPECT_GT(frame.visible_patches, 100U);
+    EXPECT_EQ(a.blocks().size() + frame.change->refused.size(), frame.visible_patches);
+    EXPECT_TRUE(frame.change->refused.empty());
+    std::set<std::uint8_t> shades(picture.begin(), picture.begin() + 512 * 512);
+    EXPECT_GT(shades.size(), 50U) << "a lit scene has many shades";
   }
 }
 
