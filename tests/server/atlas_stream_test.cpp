@@ -1,0 +1,185 @@
+#include "server/atlas_stream.h"
+
+#include "codec/video.h"
+#include "render/gpu/open_device.h"
+#include "render/scene/load.h"
+#include "server/atlas_source.h"
+#include "tests/server/daemon_fixture.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <map>
+#include <memory>
+#include <set>
+
+namespace atlaswire::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A small scene on the device that is there, with the validation layer watching.
+class AtlasStreamTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    device = render::open_device({"auto", true});
+    scene = std::make_shared<const render::Scene>(render::load_scene("atrium:0.05").value());
+  }
+  static void TearDownTestSuite() {
+    scene.reset();
+    device.reset();
+  }
+
+  AtlasStreamTest() {
+    settings.render.atlas = settings.render.allocator.atlas = {256, 256};
+    settings.video.threads = 1;
+    request.camera.extent = {160, 90};
+    request.camera.pose = scene->start;
+  }
+  void TearDown() override { EXPECT_TRUE(render::validation_messages(*device).empty()); }
+
+  std::unique_ptr<AtlasStream> make_stream() {
+    return std::make_unique<AtlasStream>(
+        settings, scene, render::make_method(settings.method, *device, scene, settings.render));
+  }
+
+  static std::shared_ptr<render::Device> device;
+  static std::shared_ptr<const render::Scene> scene;
+  StreamSettings settings;
+  ViewRequest request;
+};
+
+std::shared_ptr<render::Device> AtlasStreamTest::device;
+std::shared_ptr<const render::Scene> AtlasStreamTest::scene;
+
+/// What a client knows: applies updates strictly.
+struct Replica {
+  std::set<std::uint32_t> vertices;
+  std::map<std::uint32_t, Block> patches;
+
+  void apply(const codec::MetaUpdate& update) {
+    if (update.reset) *this = {};
+    for (const PatchId id : update.removed) EXPECT_EQ(patches.erase(value(id)), 1U);
+    for (const auto& vertex : update.vertices) EXPECT_TRUE(vertices.insert(value(vertex.id)).second);
+    for (const auto& added : update.added) {
+      EXPECT_TRUE(patches.emplace(value(added.id), added.block).second);
+      for (std::uint32_t corner = 0; corner < corner_count(added.triangles); ++corner) {
+        EXPECT_TRUE(vertices.contains(value(added.corners[corner])));
+      }
+    }
+    for (const auto& moved : update.moved) patches.at(value(moved.id)) = moved.block;
+  }
+};
+
+TEST_F(AtlasStreamTest, AClientCanFollowEveryFrame) {
+  const auto stream = make_stream();
+  codec::VideoDecoder video(stream->picture_extent());
+  const ReplicaTracker limits(scene, settings.grid_bits);
+  const auto meta =
+      codec::make_meta_decoder(codec::MetaCodecKind::kPlain, limits.limits(settings.render.atlas));
+  Replica replica;
+  for (std::uint32_t n = 0; n < 8; ++n) {
+    request.camera.pose.position.x += 0.2;
+    request.pose = PoseId{n + 1};
+    const auto frame = stream->encode(stream->render(request)).value();
+    EXPECT_EQ(value(frame.frame), n);
+    EXPECT_EQ(frame.pose, PoseId{n + 1});
+    EXPECT_EQ(frame.idr, n % 5 == 0);
+    const auto update = meta->decode(frame.meta).value();
+    EXPECT_EQ(update.frame, frame.frame);
+    EXPECT_EQ(update.reset, n == 0);
+    replica.apply(update);
+    const auto picture = video.decode(frame.video);
+    ASSERT_TRUE(picture.has_value()) << picture.error().message();
+    EXPECT_EQ(picture->view().extent, stream->picture_extent());
+    EXPECT_GT(frame.report.visible_patches, 0U);
+  }
+  EXPECT_GT(replica.patches.size(), 100U);
+}
+
+TEST_F(AtlasStreamTest, RestartTellsANewcomerAll) {
+  const auto stream = make_stream();
+  const ReplicaTracker limits(scene, settings.grid_bits);
+  const auto meta =
+      codec::make_meta_decoder(codec::MetaCodecKind::kPlain, limits.limits(settings.render.atlas));
+  Replica old_client;
+  for (int n = 0; n < 3; ++n) {
+    request.camera.pose.position.z += 0.3;
+    old_client.apply(meta->decode(stream->encode(stream->render(request)).value().meta).value());
+  }
+  request.restart = true;
+  const auto frame = stream->encode(stream->render(request)).value();
+  EXPECT_TRUE(frame.idr);
+  Replica newcomer;
+  const auto update = meta->decode(frame.meta).value();
+  EXPECT_TRUE(update.reset);
+  newcomer.apply(update);
+  old_client.apply(update);
+  EXPECT_EQ(newcomer.patches, old_client.patches);
+  EXPECT_EQ(newcomer.vertices, old_client.vertices);
+}
+
+TEST_F(AtlasStreamTest, RefreshBringsAnEarlyIntraFrame) {
+  const auto stream = make_stream();
+  std::string kinds;
+  for (int n = 0; n < 6; ++n) {
+    request.refresh = n == 3;
+    kinds += stream->encode(stream->render(request)).value().idr ? 'I' : 'P';
+  }
+  EXPECT_EQ(kinds, "IPPIPP");
+}
+
+TEST_F(AtlasStreamTest, TheDescriptionIsFitForTheWire) {
+  AtlasSource source(settings, *device, scene);
+  EXPECT_FALSE(source.parameter_sets().empty());
+  ByteBuffer bytes;
+  proto::ServerHello hello;
+  hello.session = SessionId{1};
+  hello.stream = source.description();
+  proto::append_message(hello, bytes);
+  const auto parsed = proto::parse_message(ByteView(bytes).subspan(4));
+  ASSERT_TRUE(parsed.has_value()) << parsed.error().message();
+}
+
+TEST_F(AtlasStreamTest, AWarmStreamIsHandedOutAgain) {
+  AtlasSource source(settings, *device, scene);
+  auto first = source.make();
+  const FrameMaker* address = first.get();
+  source.give_back(std::move(first));
+  EXPECT_EQ(source.make().get(), address);
+}
+
+TEST_F(AtlasStreamTest, TheDaemonServesThroughGarbageAndSilence) {
+  AtlasSource source(settings, *device, scene);
+  DaemonSettings daemon_settings;
+  daemon_settings.stream = settings;
+  RunningDaemon daemon(daemon_settings, source);
+  proto::ClientHello hello;
+  hello.display = {160, 90};
+  RawClient client(daemon.port(), hello);
+  ASSERT_TRUE(client.run_until_frames(5, 60s));
+  const RawSocket silent(SOCK_STREAM, daemon.port());
+  RawSocket garbage(SOCK_STREAM, daemon.port());
+  garbage.send(ByteBuffer(3000, std::byte{0xAB}));
+  RawSocket flood(SOCK_DGRAM, daemon.port());
+  const auto goal = client.paired() + 10;
+  unsigned sent = 0;
+  EXPECT_TRUE(client.run_until(
+      [&] {
+        for (int i = 0; i < 100; ++i, ++sent) {
+          flood.send(ByteBuffer(100 + sent % 900, static_cast<std::byte>(sent)));
+        }
+        return client.paired() >= goal;
+      },
+      60s));
+  // A second client joins and leaves without a word; the first goes on.
+  {
+    RawClient doomed(daemon.port(), hello);
+    EXPECT_TRUE(doomed.run_until_frames(2, 60s));
+  }
+  EXPECT_TRUE(client.run_until_frames(client.paired() + 5, 60s));
+  EXPECT_FALSE(client.goodbye());
+}
+
+}  // namespace
+}  // namespace atlaswire::server
