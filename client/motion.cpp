@@ -19,9 +19,7 @@ Tracker::Motion play(render::CameraPath path) {
 Tracker::Motion load_path(const std::string& name_or_file) {
   Result<render::CameraPath> path = render::CameraPath::load(name_or_file);
   if (path) return play(std::move(*path));
-  throw ProgramError(ExitCode::kBadScene,
-                     fmt::format("camera path: {}; built-in ones are {}", path.error().message(),
-                                 fmt::join(render::CameraPath::builtin(), ", ")));
+  throw ProgramError(ExitCode::kBadScene, "--path: " + path.error().message());
 }
 
 }  // namespace
