@@ -5,13 +5,31 @@
 #include "render/display/display_pass.h"
 #include "render/gpu/device.h"
 
-#include <algorithm>
+#include <vector>
 
 namespace atlaswire::client {
 namespace {
 
 render::I420Planes planes_of(const codec::I420View& v) {
   return {.extent = v.extent, .y = v.y, .u = v.u, .v = v.v, .y_stride = v.y_stride, .uv_stride = v.uv_stride};
+}
+
+/// One triangle in front of the camera, drawn in every way that the stream's scene may ask for.
+render::MeshData warm_up_mesh(const proto::StreamDescription& stream) {
+  using Alpha = PatchClass::Alpha;
+  render::MeshData mesh;
+  mesh.vertices = {{{-0.5F, -0.5F, -2.0F}, 1, 1}, {{0.5F, -0.5F, -2.0F}, 3, 1}, {{0.0F, 0.5F, -2.0F}, 1, 3}};
+  mesh.indices = {0, 1, 2};
+  const render::MeshData::Range all{.first = 0, .count = 3};
+  for (const bool double_sided : {false, true}) {
+    if (double_sided && !stream.double_sided) break;
+    mesh.solid[static_cast<std::size_t>(Alpha::kOpaque)][double_sided ? 1 : 0] = all;
+    if (stream.alpha_mask) mesh.solid[static_cast<std::size_t>(Alpha::kMask)][double_sided ? 1 : 0] = all;
+    if (stream.alpha_blend) {
+      mesh.blended.push_back({.centre = {0, 0, -2}, .range = all, .double_sided = double_sided});
+    }
+  }
+  return mesh;
 }
 
 }  // namespace
@@ -28,8 +46,22 @@ struct PairRenderer::Parts {
   std::uint32_t slot = 0;
 };
 
-PairRenderer::PairRenderer(render::Device& device, const proto::StreamDescription& stream)
-    : parts_(std::make_unique<Parts>(device, stream)) {}
+PairRenderer::PairRenderer(render::Device& device, const proto::StreamDescription& stream,
+                           const render::Camera& camera)
+    : parts_(std::make_unique<Parts>(device, stream)) {
+  const Extent2D extent = parts_->atlas.picture_extent();
+  const std::vector<std::uint8_t> grey(extent.area(), 128);
+  parts_->slot = parts_->atlas.upload({.extent = extent,
+                                       .y = grey.data(),
+                                       .u = grey.data(),
+                                       .v = grey.data(),
+                                       .y_stride = extent.width,
+                                       .uv_stride = extent.width / 2});
+  parts_->mesh.assign(warm_up_mesh(stream), {});
+  render::Camera at_origin = camera;
+  at_origin.pose = {};
+  draw(at_origin);
+}
 PairRenderer::~PairRenderer() = default;
 
 void PairRenderer::show(const Pair& pair) {

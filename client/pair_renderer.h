@@ -13,7 +13,8 @@ namespace atlaswire::client {
 /// The display stage ([SAS] 3.6) on a device: shows one pair, redraws it for any camera. One thread.
 class PairRenderer {
  public:
-  PairRenderer(render::Device& device, const proto::StreamDescription& stream);
+  /// Draws once for `camera`, so that the first pair does not wait for pipelines to compile.
+  PairRenderer(render::Device& device, const proto::StreamDescription& stream, const render::Camera& camera);
   ~PairRenderer();
 
   /// Switches to this pair's atlas and vertex buffer.

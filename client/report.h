@@ -60,7 +60,7 @@ struct RunReport {
   std::uint64_t pictures_left_out = 0;
 };
 
-/// summary.json; docs/OPERATIONS.md lists its members.
+/// summary.json; docs/CLIENT.md lists its members.
 std::string to_json(const RunReport& report);
 /// The table at a run's end.
 std::string to_table(const RunReport& report);

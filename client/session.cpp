@@ -98,6 +98,11 @@ void Session::on_answer(const proto::ServerHello& answer, Time now) {
   if (Result<void> kept = proto::check_answer(settings_.hello, answer); !kept) {
     return break_off("the server's answer does not fit our hello: " + kept.error().message());
   }
+  const proto::StreamDescription& stream = answer.stream;
+  const std::uint32_t planes = stream.has_coverage ? 2 : 1;
+  if (stream.picture.width != stream.atlas.width || stream.picture.height != stream.atlas.height * planes) {
+    return break_off("the server's picture holds more than the atlas and its coverage, which we cannot show");
+  }
   answer_ = answer;
   media_.emplace(answer, settings_);
   media_due_ = now + settings_.datagram_timeout;

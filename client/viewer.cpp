@@ -79,7 +79,8 @@ class Viewer {
     tracker_.set_motion(motion_.choose(stream.scene));
     spdlog::info("session {} streams {}: atlas {}x{}, path {}", value(answer_->session), stream.scene,
                  stream.atlas.width, stream.atlas.height, motion_.name());
-    PairRenderer renderer(*device_, stream);
+    const DisplaySettings display = display_settings(stream);
+    PairRenderer renderer(*device_, stream, display.camera);
     std::optional<PictureWriter> writer;
     if (settings_.png_every != 0) writer.emplace();
     DecodeThread decoder(stream, settings_.decoder_threads, arrivals_, pairs_,
@@ -89,8 +90,7 @@ class Viewer {
     const DisplayHooks hooks{.should_stop = [this] { return interrupted() || network_->end().has_value(); },
                              .on_progress = [this](const Progress& p) { on_progress(p); },
                              .on_measuring = [this](Time) { facts_.measured_from = network_->snapshot(); }};
-    facts_.display =
-        run_display(display_settings(stream), tracker_, pairs_, renderer, writer ? &*writer : nullptr, hooks);
+    facts_.display = run_display(display, tracker_, pairs_, renderer, writer ? &*writer : nullptr, hooks);
     facts_.measured_to = network_->snapshot();
     network_->finish();
     arrivals_.close();

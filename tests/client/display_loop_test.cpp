@@ -39,7 +39,7 @@ class DisplayLoopTest : public render::test::GpuTest {
 };
 
 TEST_F(DisplayLoopTest, RendererShowsThePairWhereItLies) {
-  PairRenderer renderer(device(), square_stream());
+  PairRenderer renderer(device(), square_stream(), settings().camera);
   renderer.show(pair_of(180));
   render::Camera camera = settings().camera;
   renderer.draw(camera);
@@ -52,8 +52,16 @@ TEST_F(DisplayLoopTest, RendererShowsThePairWhereItLies) {
   EXPECT_EQ(renderer.read_back().at(32, 32)[3], 0);
 }
 
+TEST_F(DisplayLoopTest, RendererWarmsUpForEveryClassOfPatch) {
+  proto::StreamDescription stream = square_stream();
+  stream.picture = {64, 128};
+  stream.has_coverage = stream.alpha_mask = stream.alpha_blend = stream.double_sided = true;
+  PairRenderer renderer(device(), stream, settings().camera);
+  EXPECT_EQ(renderer.read_back().at(32, 32)[3], 255);
+}
+
 TEST_F(DisplayLoopTest, RedrawsOnePairForManyPoses) {
-  PairRenderer renderer(device(), square_stream());
+  PairRenderer renderer(device(), square_stream(), settings().camera);
   HandOver<Pair> pairs;
   pairs.put(pair_of(90));
   Tracker tracker;
@@ -80,7 +88,7 @@ TEST_F(DisplayLoopTest, RedrawsOnePairForManyPoses) {
 }
 
 TEST_F(DisplayLoopTest, DrawsSamplesAtTheServersPose) {
-  PairRenderer renderer(device(), square_stream());
+  PairRenderer renderer(device(), square_stream(), settings().camera);
   HandOver<Pair> pairs;
   Pair pair = pair_of(90);
   pair.server_pose = StampedPose{.id = PoseId{1}, .sampled = Time{}, .pose = {.position = {0, 0, 1}}};
@@ -100,7 +108,7 @@ TEST_F(DisplayLoopTest, DrawsSamplesAtTheServersPose) {
 }
 
 TEST_F(DisplayLoopTest, EndsWithoutAPairWhenToldTo) {
-  PairRenderer renderer(device(), square_stream());
+  PairRenderer renderer(device(), square_stream(), settings().camera);
   HandOver<Pair> pairs;
   Tracker tracker;
   tracker.set_motion([](Duration) { return Pose{}; });

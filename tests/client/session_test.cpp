@@ -262,6 +262,19 @@ TEST(Session, RefusesAnAnswerBeyondItsHello) {
   expect_end(w, Kind::kNoAnswer, "does not fit our hello");
 }
 
+TEST(Session, RefusesAPictureThatIsNotJustTheAtlas) {
+  World wide;
+  wide.server.answer.stream.picture = {512, 128};
+  wide.run(milliseconds(100));
+  expect_end(wide, Kind::kNoAnswer, "more than the atlas");
+
+  World covered;
+  covered.server.answer.stream.picture = {256, 256};
+  covered.server.answer.stream.has_coverage = true;
+  covered.run(milliseconds(100));
+  EXPECT_FALSE(covered.session.end());
+}
+
 TEST(Session, IgnoresGarbageDatagrams) {
   World w;
   w.run(milliseconds(200));
