@@ -29,7 +29,7 @@ class StreamRunnerTest : public ::testing::Test {
         frames.push_back(std::move(frame));
       }
       changed.notify_all();
-      if (take && runner) runner->frame_taken();
+      if (take) taker->frame_taken();
     };
     callbacks.on_failure = [this](std::string reason) {
       {
@@ -39,6 +39,7 @@ class StreamRunnerTest : public ::testing::Test {
       changed.notify_all();
     };
     runner = std::make_unique<StreamRunner>(settings, std::move(callbacks));
+    taker = runner.get();
   }
 
   void pose(std::uint32_t id) { runner->set_view({PoseId{id}, {}, {}}, steady_now(), Duration{0}); }
@@ -57,6 +58,7 @@ class StreamRunnerTest : public ::testing::Test {
   std::vector<std::string> failures;
   bool take = true;
   std::unique_ptr<StreamRunner> runner;
+  StreamRunner* taker = nullptr;  ///< for its own threads, which see it after the first pose
 };
 
 TEST_F(StreamRunnerTest, RendersNothingWithoutAPoseAndGivesTheStreamBack) {
