@@ -1,8 +1,7 @@
 #version 460
-// Writes the triangle that a pixel shows. Which patch that is, the mark pass looks up: seldom, where ids change,
-// and not for each pixel.
+// Writes the patch that a pixel shows.
 
-layout(location = 0) flat in uint first_triangle;
-layout(location = 0) out uint triangle;
+layout(location = 0) flat in uint patch_id;
+layout(location = 0) out uint id;
 
-void main() { triangle = first_triangle + uint(gl_PrimitiveID); }
+void main() { id = patch_id; }

@@ -10,11 +10,11 @@ layout(early_fragment_tests) in;
 layout(set = 1, binding = 0) uniform MaterialBlock { MaterialConstants material; };
 layout(set = 1, binding = 1) uniform sampler2D base_color_texture;
 
-layout(location = 0) flat in uint first_triangle;
+layout(location = 0) flat in uint patch_id;
 layout(location = 1) in vec2 uv;
 
 void main() {
   // Less than half of one level of eight bits shows nothing.
   if (material.base_color.a * texture(base_color_texture, uv).a < 0.5 / 255.0) return;
-  mark(first_triangle + uint(gl_PrimitiveID));
+  mark(patch_id);
 }

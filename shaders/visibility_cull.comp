@@ -56,5 +56,5 @@ void main() {
   uint i = cull.first + gl_GlobalInvocationID.x;
   ChunkCandidate chunk = candidates[i];
   uint instances = may_show(chunk.low.xyz, chunk.high.xyz) ? 1u : 0u;
-  commands[i] = DrawCommand(chunk.index_count, instances, chunk.first_index, 0, chunk.first_triangle);
+  commands[i] = DrawCommand(chunk.index_count, instances, chunk.first_index, 0, 0u);
 }

@@ -19,8 +19,8 @@ using uint = std::uint32_t;
 #define AW_CONST const uint
 #endif
 
-/// The triangle of a pixel that shows nothing.
-AW_CONST kNoTriangle = 0xffffffffu;
+/// The id of a pixel that shows nothing.
+AW_CONST kNoPatch = 0xffffffffu;
 /// Invocations of a work group of the passes over patches and chunks.
 AW_CONST kListGroup = 64u;
 /// Pixels that one invocation of the mark pass reads, side by side; at most 32.
@@ -74,8 +74,7 @@ struct ChunkCandidate {
   vec4 high;
   uint index_count;
   uint first_index;
-  uint first_triangle;
-  uint padding;
+  uint padding[2];
 };
 
 /// VkDrawIndexedIndirectCommand.
@@ -84,7 +83,7 @@ struct DrawCommand {
   uint instance_count;
   uint first_index;
   int vertex_offset;
-  uint first_instance;  // the first triangle: the fragment shader adds gl_PrimitiveID
+  uint first_instance;
 };
 
 #undef AW_CONST

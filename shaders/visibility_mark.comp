@@ -23,7 +23,7 @@ void main() {
   }
   while (changes != 0u) {
     uint changed = texelFetch(ids, ivec2(x + findLSB(changes), y), 0).r;
-    if (changed != kNoTriangle) mark(changed);
+    if (changed != kNoPatch) mark(changed);
     changes &= changes - 1u;
   }
 }

@@ -117,9 +117,7 @@ DeviceFeatures::DeviceFeatures(const vk::raii::PhysicalDevice& device) {
   core = vk::PhysicalDeviceFeatures2{
       .pNext = &v11,
       .features = {.independentBlend = has.independentBlend,
-                   .geometryShader = true,
                    .multiDrawIndirect = true,
-                   .drawIndirectFirstInstance = true,
                    .depthClamp = has.depthClamp,
                    .samplerAnisotropy = has.samplerAnisotropy,
                    .vertexPipelineStoresAndAtomics = has.vertexPipelineStoresAndAtomics,
@@ -143,10 +141,8 @@ std::string missing_in(const vk::raii::PhysicalDevice& device) {
   const auto& core = have.get<vk::PhysicalDeviceFeatures2>().features;
   const auto& v12 = have.get<vk::PhysicalDeviceVulkan12Features>();
   const auto& v13 = have.get<vk::PhysicalDeviceVulkan13Features>();
-  const std::array<std::pair<vk::Bool32, const char*>, 10> needed{{
-      {core.geometryShader, "geometryShader (primitive ids)"},
+  const std::array<std::pair<vk::Bool32, const char*>, 8> needed{{
       {core.multiDrawIndirect, "multiDrawIndirect"},
-      {core.drawIndirectFirstInstance, "drawIndirectFirstInstance"},
       {core.fragmentStoresAndAtomics, "fragmentStoresAndAtomics"},
       {v12.scalarBlockLayout, "scalarBlockLayout"},
       {v12.timelineSemaphore, "timelineSemaphore"},

@@ -46,7 +46,7 @@ DrawCommand unconditional(const visibility::ChunkCandidate& chunk) {
           .instance_count = 1,
           .first_index = chunk.first_index,
           .vertex_offset = 0,
-          .first_instance = chunk.first_triangle};
+          .first_instance = 0};
 }
 
 }  // namespace
@@ -68,7 +68,6 @@ VisibilityPass::VisibilityPass(Device& device, const SceneGpu& scene, const Visi
     occlusion_.emplace(device, static_cast<std::uint32_t>(settings.max_views * scene.scene().chunks.size()));
   }
   AW_ASSERT(settings.max_views >= 1 && settings.fov_scale >= 1 && settings.id_scale > 0);
-  sets_.write(0, 0, scene.triangle_patch());
   sets_.write(0, 1, geometry_.marks);
   sets_.write(0, 3, geometry_.positions);
   sets_.write(0, 4, geometry_.corners);
@@ -158,7 +157,7 @@ void VisibilityPass::draw(const vk::raii::CommandBuffer& commands, const visibil
                           const DrawList& list, const Buffer& indirect, std::uint32_t first_command,
                           bool clear) {
   const auto color =
-      target(*ids_, clear, vk::ClearColorValue(std::array<std::uint32_t, 4>{visibility::kNoTriangle}));
+      target(*ids_, clear, vk::ClearColorValue(std::array<std::uint32_t, 4>{visibility::kNoPatch}));
   const auto depth = target(*depth_, clear, vk::ClearDepthStencilValue{.depth = 0.0F});
   const Extent2D extent = ids_->extent();
   commands.beginRendering({.renderArea = {.extent = {extent.width, extent.height}},
@@ -167,17 +166,16 @@ void VisibilityPass::draw(const vk::raii::CommandBuffer& commands, const visibil
                            .pColorAttachments = &color,
                            .pDepthAttachment = &depth});
   set_viewport(commands, extent);
+  commands.bindIndexBuffer(geometry_.indices.handle(), 0, vk::IndexType::eUint32);
   for (const DrawRange& range : list.ranges) {
     const bool opaque = range.id_class == IdClass::kOpaque;
     const Pipeline& pipeline = pipelines_.draw(range.id_class, range.double_sided);
     if (opaque) {
       pipeline.bind(commands, {sets_.handle()});
-      commands.bindVertexBuffers(0, geometry_.positions.handle(), vk::DeviceSize{0});
-      commands.bindIndexBuffer(geometry_.indices.handle(), 0, vk::IndexType::eUint32);
+      commands.bindVertexBuffers(0, geometry_.solid.handle(), vk::DeviceSize{0});
     } else {
       pipeline.bind(commands, {sets_.handle(), scene_->material_set(range.material)});
-      commands.bindVertexBuffers(0, scene_->vertices().handle(), vk::DeviceSize{0});
-      commands.bindIndexBuffer(scene_->indices().handle(), 0, vk::IndexType::eUint32);
+      commands.bindVertexBuffers(0, geometry_.cut.handle(), vk::DeviceSize{0});
     }
     pipeline.push(commands, view);
     commands.drawIndexedIndirect(indirect.handle(),

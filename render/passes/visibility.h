@@ -54,7 +54,7 @@ class VisibilityPass {
   [[nodiscard]] std::span<const std::uint32_t> levels() const;
   [[nodiscard]] const VisibilityStats& stats() const { return stats_; }
 
-  /// The last view's id buffer of triangles (Scene::triangle_patch), in use as kSampledInCompute; kNoTriangle
+  /// The last view's id buffer of patches, in use as kSampledInCompute; kNoPatch
   /// where nothing is drawn.
   [[nodiscard]] Image& ids() { return *ids_; }
 

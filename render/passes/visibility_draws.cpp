@@ -14,8 +14,7 @@ visibility::ChunkCandidate candidate(const Chunk& chunk) {
           .high = glm::vec4(chunk.box.high, 0),
           .index_count = 3 * chunk.triangle_count,
           .first_index = 3 * chunk.first_triangle,
-          .first_triangle = chunk.first_triangle,
-          .padding = 0};
+          .padding = {}};
 }
 
 }  // namespace

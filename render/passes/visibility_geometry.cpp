@@ -16,19 +16,6 @@ Buffer device_buffer(const Device& device, const char* name, std::size_t bytes, 
   return {device, {.name = name, .size = bytes, .usage = usage | Usage::eTransferDst}};
 }
 
-std::vector<std::uint32_t> position_indices(const Scene& scene) {
-  std::vector<std::uint32_t> indices;
-  indices.reserve(scene.indices.size());
-  for (const Patch& patch : scene.patches) {
-    for (std::uint32_t t = 0; t < patch.triangles; ++t) {
-      for (const std::uint8_t corner : patch_triangle(patch.triangles, t)) {
-        indices.push_back(value(patch.positions[corner]));
-      }
-    }
-  }
-  return indices;
-}
-
 std::vector<visibility::PatchCorners> patch_corners(const Scene& scene) {
   std::vector<visibility::PatchCorners> corners;
   corners.reserve(scene.patches.size());
@@ -59,10 +46,17 @@ void upload(SubmitContext& context, const Buffer& target, const std::vector<T>& 
 }  // namespace
 
 VisibilityGeometry::VisibilityGeometry(Device& device, const Scene& scene)
-    : positions(device_buffer(device, "positions", scene.positions.size() * sizeof(glm::vec3),
-                              Usage::eVertexBuffer | Usage::eStorageBuffer)),
-      indices(device_buffer(device, "position indices", scene.indices.size() * sizeof(std::uint32_t),
+    : VisibilityGeometry(device, scene, make_id_mesh(scene)) {}
+
+VisibilityGeometry::VisibilityGeometry(Device& device, const Scene& scene, const IdMesh& mesh)
+    : solid(device_buffer(device, "solid id vertices", mesh.solid.size() * sizeof(IdVertex),
+                          Usage::eVertexBuffer)),
+      cut(device_buffer(device, "cut id vertices", mesh.cut.size() * sizeof(CutVertex),
+                        Usage::eVertexBuffer)),
+      indices(device_buffer(device, "id indices", mesh.indices.size() * sizeof(std::uint32_t),
                             Usage::eIndexBuffer)),
+      positions(device_buffer(device, "positions", scene.positions.size() * sizeof(glm::vec3),
+                              Usage::eStorageBuffer)),
       corners(device_buffer(device, "patch corners", scene.patches.size() * sizeof(visibility::PatchCorners),
                             Usage::eStorageBuffer)),
       marks(device_buffer(device, "patch marks", scene.patches.size() * sizeof(std::uint32_t),
@@ -75,8 +69,10 @@ VisibilityGeometry::VisibilityGeometry(Device& device, const Scene& scene)
                       .usage = Usage::eStorageBuffer | Usage::eTransferDst,
                       .residence = Residence::kReadback}) {
   SubmitContext context(device, "visibility upload", 1);
+  upload(context, solid, mesh.solid);
+  upload(context, cut, mesh.cut);
+  upload(context, indices, mesh.indices);
   upload(context, positions, scene.positions);
-  upload(context, indices, position_indices(scene));
   upload(context, corners, patch_corners(scene));
   context.run([&](const vk::raii::CommandBuffer& commands) {
     commands.fillBuffer(marks.handle(), 0, VK_WHOLE_SIZE, 0);

@@ -2,6 +2,7 @@
 
 #include "render/gpu/buffer.h"
 #include "render/gpu/submit_context.h"
+#include "render/passes/visibility_mesh.h"
 #include "render/scene/scene.h"
 
 namespace atlaswire::render {
@@ -10,8 +11,12 @@ namespace atlaswire::render {
 struct VisibilityGeometry {
   VisibilityGeometry(Device& device, const Scene& scene);
 
-  Buffer positions;  ///< Scene::positions, 3 floats each: fewer than the shading vertices
-  Buffer indices;    ///< into them, in the order of Scene::indices
+  VisibilityGeometry(Device& device, const Scene& scene, const IdMesh& mesh);
+
+  Buffer solid;      ///< IdMesh
+  Buffer cut;        ///< IdMesh
+  Buffer indices;    ///< IdMesh
+  Buffer positions;  ///< Scene::positions, 3 floats each
   Buffer corners;    ///< visibility::PatchCorners by patch
   Buffer marks;      ///< a word a patch: not 0 if seen in this frame; 0 between frames
   Buffer list;       ///< visibility::kListHeader words, then the marked patches in no order

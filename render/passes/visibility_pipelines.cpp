@@ -1,6 +1,7 @@
 #include "render/passes/visibility_pipelines.h"
 
 #include "base/assert.h"
+#include "render/passes/visibility_mesh.h"
 #include "shaders/shaders.h"
 #include "shaders/visibility_layout.h"
 
@@ -26,8 +27,11 @@ GraphicsSettings draw_settings(const SceneGpu& scene, const DescriptorLayout& la
       .fragment = shaders::visibility_frag,
       .layouts = {layout.handle()},
       .push_constant_bytes = sizeof(visibility::ViewConstants),
-      .vertex_bindings = {{.binding = 0, .stride = sizeof(glm::vec3)}},
-      .vertex_attributes = {{.location = 0, .binding = 0, .format = vk::Format::eR32G32B32Sfloat}},
+      .vertex_bindings = {{.binding = 0, .stride = sizeof(IdVertex)}},
+      .vertex_attributes = {{.location = 0, .format = vk::Format::eR32G32B32Sfloat},
+                            {.location = 1,
+                             .format = vk::Format::eR32Uint,
+                             .offset = offsetof(IdVertex, patch)}},
       .cull = double_sided ? vk::CullModeFlags{} : vk::CullModeFlagBits::eBack,
       .colors = {kIdFormat},
       .depth = kIdDepthFormat,
@@ -36,11 +40,10 @@ GraphicsSettings draw_settings(const SceneGpu& scene, const DescriptorLayout& la
   s.vertex = shaders::visibility_masked_vert;
   s.fragment = shaders::visibility_masked_frag;
   s.layouts.push_back(scene.material_layout().handle());
-  s.vertex_bindings = {{.binding = 0, .stride = sizeof(ShadingVertex)}};
-  s.vertex_attributes.push_back({.location = 1,
-                                 .binding = 0,
-                                 .format = vk::Format::eR32G32Sfloat,
-                                 .offset = offsetof(ShadingVertex, uv)});
+  s.vertex_bindings = {{.binding = 0, .stride = sizeof(CutVertex)}};
+  static_assert(offsetof(CutVertex, patch) == offsetof(IdVertex, patch));
+  s.vertex_attributes.push_back(
+      {.location = 2, .format = vk::Format::eR32G32Sfloat, .offset = offsetof(CutVertex, uv)});
   if (id_class == IdClass::kBlended) {
     s.fragment = shaders::visibility_blended_frag;
     s.depth_write = false;
@@ -52,8 +55,7 @@ GraphicsSettings draw_settings(const SceneGpu& scene, const DescriptorLayout& la
 }  // namespace
 
 std::vector<Binding> visibility_bindings() {
-  return {{.binding = 0, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute},
-          {.binding = 1, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute},
+  return {{.binding = 1, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute},
           {.binding = 2, .type = Type::eCombinedImageSampler, .stages = Stage::eCompute},
           {.binding = 3, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
           {.binding = 4, .type = Type::eStorageBuffer, .stages = Stage::eCompute},

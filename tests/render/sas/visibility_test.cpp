@@ -20,7 +20,7 @@ namespace {
 using test::TinyScene;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using visibility::kNoTriangle;
+using visibility::kNoPatch;
 
 constexpr PatchClass kOpaque{};
 constexpr PatchClass kDoubleSided{.double_sided = true};
@@ -80,11 +80,8 @@ class Visibility : public test::GpuTest {
         writes_to_host(commands);
       });
       copy.invalidate();
-      std::vector<std::uint32_t> patches;
-      for (const std::uint32_t triangle : copy.mapped<std::uint32_t>()) {
-        patches.push_back(triangle == kNoTriangle ? kNoTriangle : scene_.scene().triangle_patch.at(triangle));
-      }
-      return patches;
+      const auto words = copy.mapped<std::uint32_t>();
+      return {words.begin(), words.end()};
     }
 
     SceneGpu scene_;
@@ -103,7 +100,7 @@ std::optional<std::uint32_t> cast(const Scene& scene, const glm::dvec3& eye, con
                                   double near_plane) {
   constexpr double kUnsure = 2e-3;
   double nearest = 1e30;
-  std::uint32_t id = kNoTriangle;
+  std::uint32_t id = kNoPatch;
   std::vector<double> unsure;
   for (std::size_t t = 0; t < scene.triangle_patch.size(); ++t) {
     const auto corner = [&](std::size_t i) {
@@ -190,7 +187,7 @@ TEST_F(Visibility, EachPixelShowsWhatARayHits) {
     std::ranges::sort(shown);
     const auto [first, last] = std::ranges::unique(shown);
     shown.erase(first, last);
-    if (!shown.empty() && shown.back() == kNoTriangle) shown.pop_back();
+    if (!shown.empty() && shown.back() == kNoPatch) shown.pop_back();
     EXPECT_EQ(seen.patches, shown) << "marks are the patches that the id buffer shows";
   }
 }
