@@ -4,6 +4,7 @@
 #include "render/display/display_mesh.h"
 #include "render/display/display_pass.h"
 #include "render/gpu/device.h"
+#include "render/passes/tonemap.h"
 
 #include <vector>
 
@@ -38,7 +39,8 @@ struct PairRenderer::Parts {
   Parts(render::Device& device, const proto::StreamDescription& stream)
       : atlas(device, stream.atlas, stream.has_coverage),
         mesh(device),
-        pass(device, atlas, {stream.background[0], stream.background[1], stream.background[2]}) {}
+        pass(device, atlas,
+             render::display_color({stream.background[0], stream.background[1], stream.background[2]}, 1)) {}
 
   render::AtlasTexture atlas;
   render::DisplayMesh mesh;

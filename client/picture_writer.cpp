@@ -24,6 +24,7 @@ PictureWriter::Outcome PictureWriter::finish() {
 
 void PictureWriter::run() {
   while (auto job = queue_.pop()) {
+    for (std::size_t i = 3; i < job->second.rgba.size(); i += 4) job->second.rgba[i] = 255;
     const Result<void> written = render::write_png(job->second, job->first);
     const std::lock_guard lock(mutex_);
     if (written) {

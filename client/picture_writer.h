@@ -13,7 +13,8 @@
 
 namespace atlaswire::client {
 
-/// Encodes PNGs in a thread of its own, so that the display never waits for them.
+/// Encodes PNGs in a thread of its own, so that the display never waits for them. They are opaque: where
+/// nothing was drawn, the background shows.
 class PictureWriter {
  public:
   PictureWriter();

@@ -13,6 +13,15 @@
 #include <utility>
 
 namespace atlaswire::client {
+namespace {
+
+/// As a viewer sees it: the scene's background where nothing was drawn.
+render::Picture opaque(render::Picture picture) {
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
+  return picture;
+}
+
+}  // namespace
 
 struct Reference::Parts {
   Parts(render::Device& device, std::shared_ptr<const render::Scene> s)
@@ -39,7 +48,8 @@ std::vector<Quality> Reference::compare(const std::vector<Sample>& samples,
 }
 
 render::Picture Reference::triptych(const Sample& sample, const Quality& quality, Extent2D atlas) {
-  const render::Picture truth = parts_->forward.render(sample.camera);
+  const render::Picture truth = opaque(parts_->forward.render(sample.camera));
+  const render::Picture view = opaque(sample.view);
   const std::uint32_t height = sample.camera.extent.height;
   const auto width = static_cast<std::uint32_t>(std::uint64_t{atlas.width} * height / atlas.height);
   const render::Picture shading =
@@ -47,7 +57,7 @@ render::Picture Reference::triptych(const Sample& sample, const Quality& quality
   const std::array panels{
       render::Panel{.image = &truth, .label = "ground truth"},
       render::Panel{
-          .image = &sample.view,
+          .image = &view,
           .label = fmt::format("client view, MSSIM {:.3f}, PSNR {:.1f} dB", quality.mssim, quality.psnr)},
       render::Panel{.image = &shading, .label = fmt::format("atlas {}x{}", atlas.width, atlas.height)}};
   return render::side_by_side(panels);

@@ -92,7 +92,7 @@ proto::StreamDescription describe(const render::Scene& scene, const AtlasStream&
   d.max_patches = std::max(1U, static_cast<std::uint32_t>(scene.patches.size()));
   d.frame_rate = settings.max_fps;
   d.near_plane = render::Camera{}.near_plane;
-  const glm::vec3 background = glm::clamp(scene.background, 0.0F, 65504.0F);
+  const glm::vec3 background = glm::clamp(scene.background * scene.exposure, 0.0F, 65504.0F);
   d.background = {background.r, background.g, background.b};
   d.alpha_mask = scene.requirements.alpha_mask;
   d.alpha_blend = scene.requirements.alpha_blend;

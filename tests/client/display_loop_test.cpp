@@ -2,6 +2,7 @@
 
 #include "client/decode_thread.h"
 #include "client/pair_renderer.h"
+#include "render/passes/tonemap.h"
 #include "tests/client/synthetic_pair.h"
 #include "tests/render/gpu/gpu_fixture.h"
 
@@ -50,6 +51,17 @@ TEST_F(DisplayLoopTest, RendererShowsThePairWhereItLies) {
   camera.pose.position = {100, 0, 0};
   renderer.draw(camera);
   EXPECT_EQ(renderer.read_back().at(32, 32)[3], 0);
+}
+
+TEST_F(DisplayLoopTest, BackgroundIsToneMappedAsTheGroundTruths) {
+  proto::StreamDescription stream = square_stream();
+  stream.background = {0.35F, 0.55F, 0.85F};
+  PairRenderer renderer(device(), stream, settings().camera);
+  renderer.show(pair_of(180));
+  renderer.draw(settings().camera);
+  const glm::vec3 sky = render::display_color({0.35F, 0.55F, 0.85F}, 1);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(renderer.read_back().at(1, 1)[static_cast<std::size_t>(c)], sky[c] * 255, 1.5);
 }
 
 TEST_F(DisplayLoopTest, RendererWarmsUpForEveryClassOfPatch) {

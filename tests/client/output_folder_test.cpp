@@ -50,7 +50,7 @@ TEST_F(OutputFolderTest, EmptyMeansNothingIsWritten) { EXPECT_FALSE(OutputFolder
 TEST_F(OutputFolderTest, PictureWriterWritesInItsOwnThread) {
   std::filesystem::create_directories(base_);
   PictureWriter writer;
-  EXPECT_TRUE(writer.write(base_ / "a.png", render::Picture({4, 4}, {1, 2, 3, 255})));
+  EXPECT_TRUE(writer.write(base_ / "a.png", render::Picture({4, 4}, {1, 2, 3, 0})));
   EXPECT_TRUE(writer.write(base_ / "missing" / "b.png", render::Picture({4, 4})));
   const PictureWriter::Outcome outcome = writer.finish();
   EXPECT_EQ(outcome.written.size(), 1U);
