@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <thread>
 
 namespace atlaswire::render {
 namespace {
@@ -219,6 +220,26 @@ TEST_F(Sas, AtriumRunsCleanAndRepeats) {
     std::set<std::uint8_t> shades(picture.begin(), picture.begin() + 512 * 512);
     EXPECT_GT(shades.size(), 50U) << "a lit scene has many shades";
   }
+}
+
+TEST_F(Sas, StreamsOnThreadsOfTheirOwnShareADevice) {
+  const auto scene = corridor(true);
+  const auto film = [&] {
+    SasMethod method(device(), scene, small());
+    std::vector<std::uint8_t> all;
+    for (std::uint32_t i = 0; i < 5; ++i) {
+      const auto picture = planes(method.render(request(i, i == 0)).picture);
+      all.insert(all.end(), picture.begin(), picture.end());
+    }
+    return all;
+  };
+  const auto alone = film();
+  std::vector<std::vector<std::uint8_t>> together(3);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& result : together) threads.emplace_back([&] { result = film(); });
+  }
+  for (const auto& result : together) EXPECT_EQ(result, alone);
 }
 
 TEST_F(Sas, MakeMethodNamesTheKnownOnes) {
