@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""Draws a decision log: delay over time, runs of lost packets, throughput.
+
+Usage: plot_profile.py LOG.csv OUT.png [--title TEXT] [--window SECONDS]
+  LOG.csv   from `atlas-netsim --draw` or `--log`
+"""
+import argparse
+import csv
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  the backend must be chosen first
+
+COLORS = {"up": "#d95f02", "down": "#1b6ca8"}
+
+
+def read_log(name):
+    """Per direction, the originals in order of arrival, as dicts of numbers and the fate."""
+    ways = {"up": [], "down": []}
+    with open(name, newline="", encoding="ascii") as file:
+        for row in csv.DictReader(file):
+            if row["duplicate"] == "1":
+                continue
+            ways[row["direction"]].append({
+                "packet": int(row["packet"]),
+                "size": int(row["size"]),
+                "arrived": int(row["arrived_ns"]) * 1e-9,
+                "delivered": int(row["delivered_ns"]) * 1e-9,
+                "fate": row["fate"],
+            })
+    for packets in ways.values():
+        packets.sort(key=lambda p: p["packet"])
+    return ways
+
+
+def loss_runs(packets):
+    """Lengths of runs of packets that did not arrive."""
+    runs, length = [], 0
+    for packet in packets:
+        if packet["fate"] != "delivered":
+            length += 1
+        elif length:
+            runs.append(length)
+            length = 0
+    return runs + ([length] if length else [])
+
+
+def throughput(packets, time, window):
+    """Mbps of payload per window, by `time` ("arrived": offered, "delivered": what came out)."""
+    if not packets:
+        return [], []
+    end = max(p["arrived"] for p in packets) + window
+    bins = [0] * (int(end / window) + 1)
+    for packet in packets:
+        if time == "delivered" and packet["fate"] != "delivered":
+            continue
+        at = int(packet[time] / window)
+        if at < len(bins):
+            bins[at] += packet["size"]
+    return [(i + 0.5) * window for i in range(len(bins) - 1)], [b * 8e-6 / window for b in bins[:-1]]
+
+
+def draw_delay(axes, ways):
+    for way, packets in ways.items():
+        came = [p for p in packets if p["fate"] == "delivered"]
+        gone = [p for p in packets if p["fate"] != "delivered"]
+        axes.plot([p["arrived"] for p in came], [(p["delivered"] - p["arrived"]) * 1e3 for p in came], ".",
+                  markersize=1.5, color=COLORS[way], label=f"{way}: {len(came)} delivered")
+        axes.plot([p["arrived"] for p in gone], [0] * len(gone), "|", markersize=6, color=COLORS[way], alpha=0.6,
+                  clip_on=False, label=f"{way}: {len(gone)} not (ticks)")
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel("entered at, s")
+    axes.set_ylabel("delay, ms")
+    axes.legend(loc="upper right", fontsize=8, markerscale=3)
+
+
+def draw_runs(axes, ways):
+    drawn = False
+    for shift, (way, packets) in zip((-0.2, 0.2), ways.items()):
+        runs = loss_runs(packets)
+        lengths = sorted(set(runs))
+        if lengths:
+            drawn = True
+            mean = sum(runs) / len(runs)
+            axes.bar([n + shift for n in lengths], [runs.count(n) for n in lengths], width=0.4, color=COLORS[way],
+                     label=f"{way}: {100 * sum(runs) / len(packets):.2f} % lost, runs of {mean:.1f} on average")
+    axes.set_xlabel("packets lost in a row")
+    axes.set_ylabel("runs")
+    if drawn:
+        axes.set_yscale("log")
+        axes.set_ylim(bottom=0.5)
+        axes.legend(loc="upper right", fontsize=8)
+        axes.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
+    else:
+        axes.set_xticks([])
+        axes.set_yticks([])
+        axes.text(0.5, 0.5, "nothing was lost", ha="center", va="center", transform=axes.transAxes)
+
+
+def draw_throughput(axes, ways, window):
+    for way, packets in ways.items():
+        axes.plot(*throughput(packets, "arrived", window), color=COLORS[way], linewidth=1, linestyle=":",
+                  label=f"{way}: offered")
+        axes.plot(*throughput(packets, "delivered", window), color=COLORS[way], linewidth=1.2, label=f"{way}: came out")
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel("time, s")
+    axes.set_ylabel(f"Mbps, over {window * 1e3:.0f} ms")
+    axes.legend(loc="lower right", fontsize=8)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("log")
+    parser.add_argument("out")
+    parser.add_argument("--title", default="")
+    parser.add_argument("--window", type=float, default=0.1, help="seconds that throughput is averaged over")
+    options = parser.parse_args()
+    if not options.window > 0:
+        parser.error("--window must be positive")
+    try:
+        ways = read_log(options.log)
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        sys.exit(f"plot_profile.py: error: {options.log}: not a decision log: {error}")
+    figure, (delay, runs, rate) = plt.subplots(3, 1, figsize=(9, 10), constrained_layout=True)
+    figure.suptitle(options.title or options.log)
+    draw_delay(delay, ways)
+    draw_runs(runs, ways)
+    draw_throughput(rate, ways, options.window)
+    try:
+        figure.savefig(options.out, dpi=110)
+    except (OSError, ValueError) as error:
+        sys.exit(f"plot_profile.py: error: cannot write {options.out}: {error}")
+
+
+if __name__ == "__main__":
+    main()
