@@ -12,6 +12,8 @@
 namespace atlaswire::render {
 namespace {
 
+/// Beside the dark one.
+constexpr std::size_t kRoom = gpu_layout::kMaxLights - 1;
 constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
 
 float weight(const PunctualLight& light) {
@@ -90,14 +92,15 @@ LightTable make_light_table(const Scene& scene) {
   const std::size_t count = scene.lights.size();
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
-  if (count > gpu_layout::kMaxLights) {
+  if (count > kRoom) {
     std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) {
       return weight(scene.lights[a]) > weight(scene.lights[b]);
     });
-    order.resize(gpu_layout::kMaxLights);
+    order.resize(kRoom);
   }
 
   LightTable table;
+  table.lights.push_back(constants_of({.range = 1.0F, .color = glm::vec3{0.0F}}));
   table.dropped = static_cast<std::uint32_t>(count - order.size());
   std::vector<std::uint32_t> place(count, kDropped);
   for (const std::uint32_t light : order) {
