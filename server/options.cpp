@@ -170,6 +170,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   }
   render.atlas = *atlas;
   render.allocator.atlas = *atlas;
+  render.allocator.superblock_log2 = render::suited_superblock_log2(*atlas);
   demand_range("--fov-scale", render.fov_scale, 1.0, 2.0);
   demand_range("--id-scale", render.id_scale, 0.25, 2.0);
   demand_range("--views", render.max_views, 1U, 16U);

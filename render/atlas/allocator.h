@@ -52,6 +52,11 @@ struct AllocatorSettings {
   double high_water = 0.95;           ///< share of texels outside free superblocks that asks for a reset
 };
 
+/// The superblock side that suits an atlas: an eighth of the atlas's side (64 superblocks), so that large
+/// triangles find blocks of their own size without whole superblocks standing open for each width; a power of
+/// two from 2^6 to 2^8 that divides both sides, which must be multiples of 64.
+std::uint32_t suited_superblock_log2(Extent2D atlas);
+
 /// The atlas's memory: a block for each visible patch, stable while it stays visible at one size. A
 /// deterministic function of its inputs. Implementations: the sequential three-layer reference here;
 /// others (device, quadtree, the paper's S1..S3) move in behind this interface.

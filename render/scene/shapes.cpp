@@ -63,11 +63,15 @@ SourceMesh sheet(std::uint32_t columns, std::uint32_t rows,
 SourceMesh revolve(const Revolution& shape) {
   const auto segments = static_cast<std::uint32_t>(shape.profile.size() - 1);
   const std::uint32_t rows = segments * shape.between;
+  std::vector<float> arc{0.0F};  // metres along the profile, so that flat rims are not smeared
+  for (std::uint32_t i = 0; i < segments; ++i) {
+    arc.push_back(arc.back() + glm::distance(shape.profile[i], shape.profile[i + 1]));
+  }
   return sheet(shape.around, rows, [&](float u, float v) {
     const float along = v * static_cast<float>(segments);
     const auto segment = std::min(static_cast<std::uint32_t>(along), segments - 1);
-    const glm::vec2 p =
-        glm::mix(shape.profile[segment], shape.profile[segment + 1], along - static_cast<float>(segment));
+    const float part = along - static_cast<float>(segment);
+    const glm::vec2 p = glm::mix(shape.profile[segment], shape.profile[segment + 1], part);
     // At u = 1 the angle is exactly 0 again, so that the seam's points are equal.
     const float angle = u < 1.0F ? -kTau * u : 0.0F;
     const float groove =
@@ -75,7 +79,7 @@ SourceMesh revolve(const Revolution& shape) {
     const float radius = p.x * (1.0F - shape.flute_depth * groove * groove);
     SourceVertex out;
     out.position = {radius * std::cos(angle), p.y, radius * std::sin(angle)};
-    out.uv = {u * shape.uv_scale.x, p.y * shape.uv_scale.y};
+    out.uv = {u * shape.uv_scale.x, -glm::mix(arc[segment], arc[segment + 1], part) * shape.uv_scale.y};
     return out;
   });
 }

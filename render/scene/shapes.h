@@ -26,7 +26,7 @@ struct Revolution {
   std::uint32_t between = 1;  ///< quads from one profile point to the next
   std::uint32_t flutes = 0;
   float flute_depth = 0.0F;
-  glm::vec2 uv_scale{1.0F};  ///< repeats around, repeats a metre up
+  glm::vec2 uv_scale{1.0F};  ///< repeats around, repeats a metre along the profile
 };
 SourceMesh revolve(const Revolution& shape);
 
