@@ -12,6 +12,7 @@
 #include "render/camera.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <vector>
