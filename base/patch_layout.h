@@ -15,7 +15,7 @@ namespace atlaswire {
 ///   1: (0,0) (1,0) (0,1)                      {0,1,2}
 ///   2: (0,0) (1,0) (1,1) (0,1)                {0,1,2} {0,2,3}
 ///   3: (0,0) (1,0) (1,1) (1/2,1) (0,1)        {0,1,3} {1,2,3} {0,3,4}
-/// Server, client and shaders (shaders/patch_layout.glsl) all use these tables.
+/// Server and client both use these tables, and give shaders what follows from them.
 inline constexpr std::uint32_t kMaxPatchTriangles = 3;
 inline constexpr std::uint32_t kMaxPatchCorners = 5;
 
