@@ -26,12 +26,20 @@ double empirical(const std::vector<Duration>& sorted, double u) {
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x * std::sqrt(0.5)); }
 
-Duration DelaySampler::next(const DelayModel& model) {
+double DelaySampler::draw(const DelayModel& model, Time now) {
+  if (model.hold > Duration::zero()) {
+    const std::int64_t stretch = now.time_since_epoch() / model.hold;
+    if (started_ && stretch == stretch_) return previous_;
+    stretch_ = stretch;
+  }
   const double fresh = random_.normal();
   const double rho = started_ ? model.correlation : 0;
-  const double z = rho * previous_ + std::sqrt(1 - rho * rho) * fresh;
-  previous_ = z;
   started_ = true;
+  return previous_ = rho * previous_ + std::sqrt(1 - rho * rho) * fresh;
+}
+
+Duration DelaySampler::next(const DelayModel& model, Time now) {
+  const double z = draw(model, now);
   double seconds = to_seconds(model.base);
   switch (model.shape) {
     case DelayModel::Shape::kConstant:
@@ -49,7 +57,7 @@ Duration DelaySampler::next(const DelayModel& model) {
       seconds += empirical(model.samples, normal_cdf(z));
       break;
   }
-  return std::max(from_seconds(seconds), Duration::zero());
+  return std::clamp(from_seconds(seconds), Duration::zero(), model.most);
 }
 
 }  // namespace atlaswire::netsim

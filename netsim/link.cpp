@@ -65,7 +65,7 @@ std::uint64_t Link::send(ByteBuffer payload, Time now, FlowId flow, bool ecn_cap
   packet.decision.corrupted = air_.uniform() < p.corrupt && !payload.empty();
   packet.decision.reordered = air_.uniform() < p.reorder;
   packet.flipped_bit = air_.bits();
-  packet.propagation = delay_.next(p.delay);
+  packet.propagation = delay_.next(p.delay, Time{now - start_});
   packet.payload = std::move(payload);
   const std::uint64_t number = packet.decision.packet;
   if (admit(packet, now)) {

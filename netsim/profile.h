@@ -24,7 +24,12 @@ struct DelayModel {
   Duration spread{};          ///< uniform: half width; normal: deviation; Pareto: mean above `base`
   double pareto_alpha = 3.0;  ///< tail exponent, > 1; smaller is heavier
   std::vector<Duration> samples;  ///< empirical: sorted; drawn by inverse distribution, interpolated
-  double correlation = 0.0;       ///< [0, 1)
+  double correlation = 0.0;       ///< [0, 1), of successive draws
+  /// Zero: every packet draws. Otherwise one draw holds for a stretch of this length, so that delay is a
+  /// function of time: where packets keep their order, one extreme draw holds up all behind it, and the delay
+  /// of a busy link would otherwise grow with its packet rate.
+  Duration hold{};
+  Duration most = std::chrono::hours(1);  ///< draws beyond are cut to it
 };
 
 /// Which packets the air loses.
@@ -101,7 +106,7 @@ struct Profile {
   LinkProfile down;  ///< server to client
 };
 
-/// From TOML text (docs/OPERATIONS.md gives the keys); `origin` names the file in errors. Trace files are
+/// From TOML text (docs/NETSIM.md gives the keys); `origin` names the file in errors. Trace files are
 /// read relative to `directory`.
 Result<Profile> parse_profile(std::string_view toml, const std::string& origin, const std::string& directory);
 

@@ -5,6 +5,10 @@
 #include <iterator>
 #include <limits>
 
+// toml++ asserts, or with NDEBUG tells the optimizer to assume, what bad input breaks ("[" and a new line),
+// and then handles it all the same. Neither, please.
+#undef NDEBUG
+#define TOML_ASSERT(expr) static_assert(true)
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_FORMATTERS 0
 #include "netsim/profile.h"
@@ -137,6 +141,8 @@ std::optional<Error> read_delay(const toml::table& t, const std::string& where, 
   r.duration("spread_ms", m.spread);
   r.number("pareto_alpha", m.pareto_alpha, 1.01, 100);
   r.number("correlation", m.correlation, 0, 0.9999);
+  r.duration("hold_ms", m.hold);
+  r.duration("most_ms", m.most);
   if (const toml::array* samples = r.array("samples_ms")) {
     m.samples.clear();
     for (const toml::node& node : *samples) {

@@ -51,7 +51,7 @@ const char* error_text(ProfileError e) {
     case ProfileError::kSyntax:
       return "not valid TOML";
     case ProfileError::kUnknownKey:
-      return "unknown key; docs/OPERATIONS.md lists them";
+      return "unknown key; docs/NETSIM.md lists them";
     case ProfileError::kOutOfRange:
       return "value out of range";
     case ProfileError::kUnknownName:

@@ -73,28 +73,37 @@ def draw_delay(axes, ways):
     axes.set_ylim(bottom=0)
     axes.set_xlabel("entered at, s")
     axes.set_ylabel("delay, ms")
-    axes.legend(loc="upper right", fontsize=8, markerscale=3)
+    axes.legend(loc="best", fontsize=8, framealpha=0.6)
+
+
+def run_class(length):
+    """Runs are counted in classes 1, 2, 3-4, 5-8, ...: the class's number."""
+    return (length - 1).bit_length()
+
+
+def class_name(number):
+    low, high = (1 << number - 1) + 1 if number else 1, 1 << number
+    return str(high) if low >= high else f"{low}-{high}"
 
 
 def draw_runs(axes, ways):
-    drawn = False
+    classes = 0
     for shift, (way, packets) in zip((-0.2, 0.2), ways.items()):
         runs = loss_runs(packets)
-        lengths = sorted(set(runs))
-        if lengths:
-            drawn = True
-            mean = sum(runs) / len(runs)
-            axes.bar([n + shift for n in lengths], [runs.count(n) for n in lengths], width=0.4, color=COLORS[way],
-                     label=f"{way}: {100 * sum(runs) / len(packets):.2f} % lost, runs of {mean:.1f} on average")
+        if not runs:
+            continue
+        counts = [sum(run_class(r) == n for r in runs) for n in range(run_class(max(runs)) + 1)]
+        classes = max(classes, len(counts))
+        axes.bar([n + shift for n in range(len(counts))], counts, width=0.4, color=COLORS[way],
+                 label=f"{way}: {100 * sum(runs) / len(packets):.2f} % lost, runs of {sum(runs) / len(runs):.1f} on average")
     axes.set_xlabel("packets lost in a row")
     axes.set_ylabel("runs")
-    if drawn:
+    axes.set_xticks(range(classes), [class_name(n) for n in range(classes)])
+    if classes:
         axes.set_yscale("log")
         axes.set_ylim(bottom=0.5)
-        axes.legend(loc="upper right", fontsize=8)
-        axes.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
+        axes.legend(loc="upper right", fontsize=8, framealpha=0.6)
     else:
-        axes.set_xticks([])
         axes.set_yticks([])
         axes.text(0.5, 0.5, "nothing was lost", ha="center", va="center", transform=axes.transAxes)
 
@@ -107,7 +116,7 @@ def draw_throughput(axes, ways, window):
     axes.set_ylim(bottom=0)
     axes.set_xlabel("time, s")
     axes.set_ylabel(f"Mbps, over {window * 1e3:.0f} ms")
-    axes.legend(loc="lower right", fontsize=8)
+    axes.legend(loc="best", fontsize=8, framealpha=0.6)
 
 
 def main():

@@ -96,5 +96,35 @@ TEST(DelaySampler, NeverNegative) {
   for (const double v : draw(model, 7)) ASSERT_GE(v, 0);
 }
 
+TEST(DelaySampler, AHeldDrawIsAFunctionOfTimeAndNotOfThePacketRate) {
+  DelayModel model{.shape = DelayModel::Shape::kPareto,
+                   .base = std::chrono::milliseconds(3),
+                   .spread = std::chrono::milliseconds(6),
+                   .pareto_alpha = 2.2,
+                   .correlation = 0.5,
+                   .hold = std::chrono::milliseconds(20)};
+  DelaySampler busy(9);
+  DelaySampler quiet(9);
+  for (int ms = 0; ms < 2000; ++ms) {
+    const Time now{std::chrono::milliseconds(ms)};
+    const Duration delay = busy.next(model, now);
+    EXPECT_EQ(busy.next(model, now), delay);
+    if (ms % 20 == 7) {
+      EXPECT_EQ(quiet.next(model, now), delay) << ms;
+    }
+  }
+}
+
+TEST(DelaySampler, NoDrawExceedsTheMost) {
+  DelayModel model{.shape = DelayModel::Shape::kPareto,
+                   .spread = std::chrono::milliseconds(6),
+                   .pareto_alpha = 1.5,
+                   .most = std::chrono::milliseconds(40)};
+  DelaySampler sampler(2);
+  Duration longest{};
+  for (int i = 0; i < 10'000; ++i) longest = std::max(longest, sampler.next(model));
+  EXPECT_EQ(longest, std::chrono::milliseconds(40)) << "P(one draw beyond) is 2 %";
+}
+
 }  // namespace
 }  // namespace atlaswire::netsim

@@ -88,5 +88,14 @@ TEST(Trace, RefusesMalformedOnes) {
   EXPECT_THAT(parse_trace("5\n4\n").error().message(), HasSubstr("line 2 goes back in time"));
 }
 
+TEST(Profile, BrokenTablesAreErrorsInEveryBuildType) {
+  for (const char* text :
+       {"[\n", "[\nrate = { trace = \"x\" }\n", "[[\n", "[a.\n", "=", "a = {", "a = [1,,2]"}) {
+    const auto profile = parse_profile(text, "broken", ".");
+    ASSERT_TRUE(profile.has_error()) << text;
+    EXPECT_EQ(profile.error().code, make_error_code(ProfileError::kSyntax)) << text;
+  }
+}
+
 }  // namespace
 }  // namespace atlaswire::netsim
