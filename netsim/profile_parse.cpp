@@ -297,6 +297,13 @@ std::optional<Error> read_link(const toml::table& t, const std::string& where, c
 
 Result<Profile> parse_profile(std::string_view toml, const std::string& origin,
                               const std::string& directory) {
+  // toml++ 3.3 has undefined behaviour on letters beyond ASCII outside of strings, so none may get that far.
+  const auto foreign =
+      std::find_if(toml.begin(), toml.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
+  if (foreign != toml.end()) {
+    const auto line = 1 + std::count(toml.begin(), foreign, '\n');
+    return Error{ProfileError::kSyntax, origin + " line " + std::to_string(line) + ": only ASCII is allowed"};
+  }
   const toml::parse_result parsed = toml::parse(toml, origin);
   if (!parsed) {
     const auto& e = parsed.error();

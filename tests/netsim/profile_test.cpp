@@ -90,7 +90,9 @@ TEST(Trace, RefusesMalformedOnes) {
 
 TEST(Profile, BrokenTablesAreErrorsInEveryBuildType) {
   for (const char* text :
-       {"[\n", "[\nrate = { trace = \"x\" }\n", "[[\n", "[a.\n", "=", "a = {", "a = [1,,2]"}) {
+       {"[\n", "[\nrate = { trace = \"x\" }\n", "[[\n", "[a.\n", "=", "a = {", "a = [1,,2]",
+        "[up]\n\xCF\x87"
+        "ate = 1\n"}) {
     const auto profile = parse_profile(text, "broken", ".");
     ASSERT_TRUE(profile.has_error()) << text;
     EXPECT_EQ(profile.error().code, make_error_code(ProfileError::kSyntax)) << text;
