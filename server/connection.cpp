@@ -126,7 +126,11 @@ void Connection::pump() {
   if (session_.state() == SessionState::kStreaming) steer_stream();
   if (session_.state() >= SessionState::kClosing && runner_) host_.end_stream(std::move(runner_));
   send_datagrams(now);
-  for (const Departure& departure : session_.take_departures()) host_.on_departure(*this, departure);
+  for (const Departure& departure : session_.take_departures()) {
+    if (runner_ && !departure.dropped)
+      runner_->frame_left(departure.left - departure.frame->stamps.encode_end);
+    host_.on_departure(*this, departure);
+  }
   if (session_.state() == SessionState::kClosed) return finish();
   write();
   arm_timer(now);

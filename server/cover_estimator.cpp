@@ -22,9 +22,14 @@ void CoverEstimator::on_frame(Duration processing, Duration interval) {
   measured_ = true;
 }
 
+void CoverEstimator::on_sending(Duration sending) {
+  sending_ = blend(sending_, std::min(sending, settings_.most));
+}
+
 Duration CoverEstimator::cover() const {
   if (settings_.fixed) return *settings_.fixed;
-  return std::clamp(round_trip_ + processing_ + interval_ + settings_.allowance, Duration{0}, settings_.most);
+  return std::clamp(round_trip_ + processing_ + sending_ + interval_ + settings_.allowance, Duration{0},
+                    settings_.most);
 }
 
 }  // namespace atlaswire::server

@@ -6,21 +6,25 @@
 namespace atlaswire::server {
 
 /// How far ahead of its pose a frame must still be right, from what is measured: the pose's way here and the
-/// picture's way back (round trip), our own processing, and that the client shows a frame until the next one
-/// comes (frame interval). Exponentially weighted, so that one slow frame does not swell the visible set.
+/// picture's way back (round trip), our own processing and pacing, and that the client shows a frame until
+/// the next one comes (frame interval). Exponentially weighted, so that one slow frame does not swell the
+/// visible set.
 class CoverEstimator {
  public:
   CoverEstimator(const CoverSettings& settings, Duration nominal_interval);
 
   void on_round_trip(Duration round_trip) { round_trip_ = round_trip; }
-  /// A frame left: from the arrival of its pose to its departure, and since the frame before it.
+  /// A frame is encoded: time since the arrival of its pose, and since the start of the frame before it.
   void on_frame(Duration processing, Duration interval);
+  /// A frame's last datagram left this long after its encoding.
+  void on_sending(Duration sending);
   [[nodiscard]] Duration cover() const;
 
  private:
   CoverSettings settings_;
   Duration round_trip_{};
   Duration processing_{};
+  Duration sending_{};
   Duration interval_;
   bool measured_ = false;
 };

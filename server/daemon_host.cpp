@@ -33,11 +33,12 @@ std::unique_ptr<StreamRunner> Daemon::Impl::start_stream(Connection& connection)
   StreamRunner::Settings runner;
   runner.max_fps = settings_.stream.max_fps;
   if (hello.wanted_frame_rate) runner.max_fps = std::min(runner.max_fps, *hello.wanted_frame_rate);
+  runner.encoder_fps = settings_.stream.max_fps;
   runner.cover = settings_.stream.cover;
   runner.camera = client_camera(hello.display, hello.vertical_fov, source_->description().near_plane);
-  runner.bit_rate = settings_.stream.video.bit_rate;
-  if (hello.wanted_bit_rate && runner.bit_rate->bits_per_second != 0) {
-    runner.bit_rate = std::min(*runner.bit_rate, *hello.wanted_bit_rate);
+  // Always told, since a warm stream may come from a client with another wish. Constant quality has no rate.
+  if (const BitRate rate = settings_.stream.video.bit_rate; rate.bits_per_second != 0) {
+    runner.bit_rate = std::min(rate, hello.wanted_bit_rate.value_or(rate));
   }
   const std::weak_ptr<Connection> weak = connection.weak_from_this();
   StreamRunner::Callbacks callbacks;

@@ -11,8 +11,21 @@
 
 namespace atlaswire::server {
 
+namespace {
+
+ProgramError cannot_write(const std::string& path) {
+  return {ExitCode::kCannotWrite, fmt::format("--ready-file {}: cannot write there", path)};
+}
+
+}  // namespace
+
 ReadyFile::ReadyFile(std::string path) : path_(std::move(path)) {
-  if (!path_.empty()) std::remove(path_.c_str());
+  if (path_.empty()) return;
+  std::remove(path_.c_str());
+  // Found out now, not after the warm-up.
+  const bool writable = std::ofstream(path_).good();
+  std::remove(path_.c_str());
+  if (!writable) throw cannot_write(path_);
 }
 
 ReadyFile::~ReadyFile() {
@@ -27,7 +40,7 @@ void ReadyFile::write(std::uint16_t port) const {
   file.close();
   if (file && std::rename(beside.c_str(), path_.c_str()) == 0) return;
   std::remove(beside.c_str());
-  throw ProgramError(ExitCode::kCannotWrite, fmt::format("--ready-file {}: cannot write there", path_));
+  throw cannot_write(path_);
 }
 
 }  // namespace atlaswire::server

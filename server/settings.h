@@ -15,7 +15,7 @@ namespace atlaswire::server {
 using namespace std::chrono_literals;
 
 /// How far ahead of a pose its frame must still be right ([SAS] 3.1): a fixed time, or from measurement:
-/// round trip + own processing + frame interval + `allowance`, clamped to 0..`most`.
+/// round trip + own processing and pacing + frame interval + `allowance`, clamped to 0..`most`.
 struct CoverSettings {
   std::optional<Duration> fixed;
   Duration allowance = 10ms;  ///< the client's own waiting and drawing

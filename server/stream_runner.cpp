@@ -21,6 +21,7 @@ StreamRunner::StreamRunner(const Settings& settings, Callbacks callbacks)
     : settings_(settings),
       callbacks_(std::move(callbacks)),
       cover_(settings.cover, interval_of(settings.max_fps)),
+      rate_(settings.bit_rate, settings.encoder_fps),
       encoder_([this] { encode_loop(); }),
       renderer_([this](const std::stop_token& stop) { render_loop(stop); }) {}
 
@@ -63,6 +64,11 @@ void StreamRunner::frame_taken() {
   changed_.notify_all();
 }
 
+void StreamRunner::frame_left(Duration sending) {
+  const std::lock_guard lock(mutex_);
+  cover_.on_sending(sending);
+}
+
 void StreamRunner::fail(const std::string& reason) {
   {
     const std::lock_guard lock(mutex_);
@@ -98,7 +104,7 @@ ViewRequest StreamRunner::make_request() {
   request.cover = cover_.cover();
   request.refresh = std::exchange(refresh_, false);
   request.restart = std::exchange(first_, false);
-  if (request.restart) request.bit_rate = settings_.bit_rate;
+  request.bit_rate = rate_.take();
   return request;
 }
 
@@ -169,6 +175,7 @@ void StreamRunner::encode_one(PreparedFrame prepared) {
       ++untaken_;
       const auto& stamps = encoded->stamps;
       const Duration interval = last_start_ ? stamps.render_start - *last_start_ : Duration{0};
+      if (last_start_) rate_.on_interval(interval);
       last_start_ = stamps.render_start;
       cover_.on_frame(end - stamps.pose_received, interval);
     }

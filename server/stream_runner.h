@@ -5,6 +5,7 @@
 #include "render/camera.h"
 #include "server/cover_estimator.h"
 #include "server/encoded_frame.h"
+#include "server/rate_fitter.h"
 
 #include <condition_variable>
 #include <cstdint>
@@ -27,7 +28,8 @@ class StreamRunner {
     double max_fps = 15;
     CoverSettings cover;
     render::Camera camera;            ///< its pose is replaced by the client's
-    std::optional<BitRate> bit_rate;  ///< instead of the stream's
+    std::optional<BitRate> bit_rate;  ///< to hold at whatever frame rate comes about; nullopt: the stream's
+    double encoder_fps = 15;          ///< the frame rate that the encoder was told
   };
   struct Callbacks {
     /// Makes the stream, or hands out a warm one; called on the rendering thread. May throw.
@@ -52,6 +54,8 @@ class StreamRunner {
   /// Frames stop being started while paused.
   void set_paused(bool paused);
   void frame_taken();
+  /// How long a frame waited for the network after encoding.
+  void frame_left(Duration sending);
   /// Asks both threads to end after the frames in work; the destructor waits for it.
   void request_stop();
 
@@ -84,6 +88,7 @@ class StreamRunner {
   std::uint32_t untaken_ = 0;     ///< encoded and not yet taken
   std::deque<PreparedFrame> prepared_;
   CoverEstimator cover_;
+  RateFitter rate_;
   std::optional<Time> last_start_;
 
   std::jthread encoder_;

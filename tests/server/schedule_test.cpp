@@ -1,6 +1,7 @@
 #include "server/client_camera.h"
 #include "server/cover_estimator.h"
 #include "server/intra_schedule.h"
+#include "server/rate_fitter.h"
 
 #include <gtest/gtest.h>
 
@@ -79,6 +80,45 @@ TEST(CoverEstimator, StaysWithinItsBounds) {
   CoverEstimator fixed({.fixed = Duration{25ms}, .allowance = 10ms, .most = 500ms}, 50ms);
   fixed.on_round_trip(from_seconds(60));
   EXPECT_EQ(fixed.cover(), Duration{25ms});
+}
+
+TEST(CoverEstimator, PacingCountsToo) {
+  CoverEstimator cover({.fixed = {}, .allowance = 0ms, .most = 500ms}, 50ms);
+  for (int i = 0; i < 200; ++i) cover.on_sending(24ms);
+  EXPECT_NEAR(to_ms(cover.cover()), 50 + 24, 0.1);
+}
+
+/// The rate told after `count` intervals, 0 when none is.
+std::uint64_t told_after(RateFitter& fitter, int count, Duration interval) {
+  for (int i = 0; i < count; ++i) fitter.on_interval(interval);
+  const auto rate = fitter.take();
+  return rate ? rate->bits_per_second : 0;
+}
+
+TEST(RateFitter, TellsTheTargetOnceWhileFramesComeInTime) {
+  RateFitter fitter(BitRate{10'000'000}, 20);
+  EXPECT_EQ(told_after(fitter, 0, {}), 10'000'000U);
+  EXPECT_EQ(told_after(fitter, 50, 50ms), 0U);
+  EXPECT_EQ(told_after(fitter, 50, 55ms), 0U) << "within the dead band";
+}
+
+TEST(RateFitter, SlowFramesGetTheirShareOfTime) {
+  RateFitter fitter(BitRate{10'000'000}, 20);
+  fitter.take();
+  EXPECT_NEAR(static_cast<double>(told_after(fitter, 200, 150ms)), 30e6, 1e5);
+  EXPECT_NEAR(static_cast<double>(told_after(fitter, 200, 50ms)), 10e6, 1e5);
+}
+
+TEST(RateFitter, NeverMoreThanEightSharesAndNeverBelowTheTarget) {
+  RateFitter fitter(BitRate{1'000'000}, 100);
+  fitter.take();
+  EXPECT_EQ(told_after(fitter, 200, from_seconds(100)), 8'000'000U);
+  EXPECT_EQ(told_after(fitter, 200, 1ms), 1'000'000U);
+}
+
+TEST(RateFitter, LeavesConstantQualityAlone) {
+  RateFitter fitter(std::nullopt, 20);
+  EXPECT_EQ(told_after(fitter, 200, 500ms), 0U);
 }
 
 TEST(ClientCamera, KeepsAspectAndBoundsSides) {
