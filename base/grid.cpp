@@ -17,6 +17,13 @@ PositionGrid PositionGrid::over(const glm::dvec3& low, const glm::dvec3& high, s
   return grid;
 }
 
+std::uint32_t PositionGrid::suited_bits(const glm::dvec3& low, const glm::dvec3& high) {
+  constexpr double kStep = 2e-3;
+  std::uint32_t bits = 16;
+  while (bits < 20 && over(low, high, bits).step > kStep) ++bits;
+  return bits;
+}
+
 GridPosition PositionGrid::quantize(const glm::dvec3& position) const {
   const double top = static_cast<double>((1U << bits) - 1U);
   GridPosition out;

@@ -17,6 +17,10 @@ struct PositionGrid {
   /// The grid over a bounding box: step = longest side / (2^bits - 1). A zero box gets step 2^-20 m.
   static PositionGrid over(const glm::dvec3& low, const glm::dvec3& high, std::uint32_t bits);
 
+  /// The fewest bits from 16 to 20 whose step over the box is at most 2 mm, below what a viewer at arm's
+  /// length can see; 20 where none is.
+  static std::uint32_t suited_bits(const glm::dvec3& low, const glm::dvec3& high);
+
   /// Nearest grid point, clamped to the grid.
   [[nodiscard]] GridPosition quantize(const glm::dvec3& position) const;
   [[nodiscard]] glm::dvec3 position(const GridPosition& p) const;

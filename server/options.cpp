@@ -89,7 +89,7 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
   group->add_option("--reshade-interval", render.reshade_interval,
                     "Shade each block at least every N-th frame, 1..60: speed against stale reflections");
   group->add_option("--grid-bits", s.stream.grid_bits,
-                    "Bits an axis of client vertex positions, 8..20: precision against meta bytes");
+                    "Bits an axis of client vertex positions, 8..20, or 0: as many as a step of 2 mm needs, 16 to 20");
 }
 
 void add_video_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
@@ -178,7 +178,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   render.prediction_step = from_seconds(raw.prediction_step_ms / 1000);
   demand_range("--max-oversampling", render.max_oversampling, 1.0, 8.0);
   demand_range("--reshade-interval", render.reshade_interval, 1U, 60U);
-  demand_range("--grid-bits", s.grid_bits, 8U, 20U);
+  if (s.grid_bits != 0) demand_range("--grid-bits", s.grid_bits, 8U, 20U);
   apply_cover(raw.cover, s.cover);
 }
 

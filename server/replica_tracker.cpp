@@ -7,8 +7,9 @@
 namespace atlaswire::server {
 
 PositionGrid scene_grid(const render::Scene& scene, std::uint32_t bits) {
-  return PositionGrid::over(scene.origin + glm::dvec3(scene.box.low),
-                            scene.origin + glm::dvec3(scene.box.high), bits);
+  const glm::dvec3 low = scene.origin + glm::dvec3(scene.box.low);
+  const glm::dvec3 high = scene.origin + glm::dvec3(scene.box.high);
+  return PositionGrid::over(low, high, bits == 0 ? PositionGrid::suited_bits(low, high) : bits);
 }
 
 ReplicaTracker::ReplicaTracker(std::shared_ptr<const render::Scene> scene, std::uint32_t grid_bits)

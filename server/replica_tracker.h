@@ -38,6 +38,7 @@ class ReplicaTracker {
 };
 
 /// The grid that clients of a scene share: over its bounding box, in scene coordinates.
+/// `bits` 0: PositionGrid::suited_bits.
 PositionGrid scene_grid(const render::Scene& scene, std::uint32_t bits);
 
 }  // namespace atlaswire::server

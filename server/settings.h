@@ -29,7 +29,7 @@ struct StreamSettings {
   render::MethodSettings render;
   codec::VideoEncoderSettings video;
   double max_fps = 15;           ///< frames a second that are started at most, > 0
-  std::uint32_t grid_bits = 16;  ///< of the client replica's position grid, 8..20
+  std::uint32_t grid_bits = 0;  ///< of the client replica's position grid, 8..20; 0: PositionGrid::suited_bits
   CoverSettings cover;
 };
 
@@ -47,7 +47,7 @@ struct AdmissionSettings {
 /// How a session's bytes leave.
 struct DeliverySettings {
   std::uint32_t max_datagram = 1200;  ///< octets of a media datagram, RTP header included; 200..1400
-  double pacing = 2.5;                ///< media leaves at this multiple of the bit rate, >= 1
+  double pacing = 4;                  ///< media leaves at this multiple of the bit rate, >= 1
   std::size_t tcp_queue_bytes = std::size_t{8} << 20U;    ///< above it the stream pauses
   std::size_t media_queue_bytes = std::size_t{4} << 20U;  ///< a frame that does not fit is dropped whole
 };

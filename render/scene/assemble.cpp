@@ -3,6 +3,7 @@
 #include "render/scene/flatten.h"
 #include "render/scene/light_lists.h"
 #include "render/scene/scene_error.h"
+#include "render/scene/subdivide.h"
 
 #include <algorithm>
 #include <glm/common.hpp>
@@ -122,8 +123,22 @@ void cut_chunks(Scene& scene, std::uint32_t most_triangles) {
   }
 }
 
-SceneRequirements require(const Scene& scene, std::uint32_t degenerate) {
+/// Splits what is too large for one block; gives the triangles that it added.
+std::uint32_t split_huge_triangles(SceneSource& source) {
+  const float longest = suited_longest_edge(source);
+  std::size_t before = 0;
+  std::size_t after = 0;
+  for (SourceMesh& mesh : source.meshes) {
+    before += mesh.indices.size() / 3;
+    subdivide(mesh, longest);
+    after += mesh.indices.size() / 3;
+  }
+  return static_cast<std::uint32_t>(after - before);
+}
+
+SceneRequirements require(const Scene& scene, std::uint32_t degenerate, std::uint32_t split) {
   SceneRequirements r;
+  r.split_triangles = split;
   std::vector<bool> used(scene.materials.size(), false);
   for (const Patch& patch : scene.patches) {
     used[patch.material] = true;
@@ -152,6 +167,8 @@ SceneRequirements require(const Scene& scene, std::uint32_t degenerate) {
 }  // namespace
 
 Result<Scene> assemble(SceneSource source, const AssembleSettings& settings) {
+  std::uint32_t split = 0;
+  if (settings.split_huge_triangles) split = split_huge_triangles(source);
   auto flattened = flatten(source);
   if (flattened.has_error()) return flattened.error();
   const FlatMesh& flat = *flattened;
@@ -183,7 +200,7 @@ Result<Scene> assemble(SceneSource source, const AssembleSettings& settings) {
   list_triangles(scene);
   cut_chunks(scene, settings.chunk_triangles);
   list_lights(scene);
-  scene.requirements = require(scene, flat.degenerate_triangles);
+  scene.requirements = require(scene, flat.degenerate_triangles, split);
   return scene;
 }
 

@@ -9,6 +9,7 @@ namespace atlaswire::render {
 /// How a scene is put together.
 struct AssembleSettings {
   PatchSettings patches;
+  bool split_huge_triangles = true;     ///< see subdivide.h
   std::uint32_t chunk_triangles = 256;  ///< at most; smaller culls finer and costs more draws
 };
 

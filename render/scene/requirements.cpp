@@ -17,7 +17,8 @@ std::vector<std::string> explain(const SceneRequirements& r) {
       fmt::format(
           "{} triangles in {:.0f} patches: {:.1f} % of one triangle, {:.1f} % of two, {:.1f} % of three",
           r.triangles, patches, share(1), share(2), share(3)),
-      fmt::format("{} degenerate triangles dropped", r.degenerate_triangles),
+      fmt::format("{} degenerate triangles dropped, {} added by splitting huge ones", r.degenerate_triangles,
+                  r.split_triangles),
       line("alpha mask", r.alpha_mask,
            r.alpha_mask ? "a material cuts out: coverage plane, discard in id pass"
                         : "no cut-out material: no coverage plane"),

@@ -59,5 +59,14 @@ TEST(PositionGrid, BoxOfNoSizeHasAStep) {
   EXPECT_EQ(grid.quantize({4, 4, 4}), GridPosition(0));
 }
 
+TEST(PositionGrid, SuitedBitsKeepTheStepBelowTwoMillimetres) {
+  const auto bits = [](double side) { return PositionGrid::suited_bits(glm::dvec3(0), glm::dvec3(side, 1, 1)); };
+  EXPECT_EQ(bits(30), 16U);
+  EXPECT_EQ(bits(200), 17U);
+  EXPECT_EQ(bits(1500), 20U);
+  EXPECT_EQ(bits(1e6), 20U) << "the finest there is";
+  EXPECT_EQ(bits(0), 16U);
+}
+
 }  // namespace
 }  // namespace atlaswire
