@@ -20,7 +20,10 @@ using namespace std::chrono_literals;
 /// A session in virtual time with a well-behaved client's messages at hand.
 class SessionTest : public ::testing::Test {
  protected:
-  SessionTest() { settings.bit_rate.bits_per_second = 8'000'000; }
+  SessionTest() {
+    settings.bit_rate.bits_per_second = 8'000'000;
+    settings.delivery.pacing = 2.5;
+  }
 
   Session& start() {
     SessionKeys keys;
