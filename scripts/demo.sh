@@ -23,7 +23,7 @@ cmake --build --preset release -j "$(nproc)" --target atlasd atlas-client
 out=out/demo
 rm -rf "$out" && mkdir -p "$out"
 bin=build/release/bin
-"$bin/atlasd" --scene "$scene" --port 0 --ready-file "$out/atlasd.json" >"$out/atlasd.log" 2>&1 &
+"$bin/atlasd" --scene "$scene" --reshade-interval 4 --port 0 --ready-file "$out/atlasd.json" >"$out/atlasd.log" 2>&1 &
 daemon=$!
 trap 'kill -TERM $daemon 2>/dev/null; wait $daemon 2>/dev/null || true' EXIT
 echo "starting atlasd with scene $scene"
