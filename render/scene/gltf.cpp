@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -286,7 +287,7 @@ Result<SceneSource> read_gltf(const std::string& file) {
     return Error{SceneError::kMalformed, "'" + file + "': " + errors};
   }
   SceneSource source;
-  source.name = file;
+  source.name = std::filesystem::path(file).filename().string();  // clients are told it: no folders
   Reader reader(model, source);
   if (auto result = reader.read(); result.has_error()) {
     return Error{result.error().code, "'" + file + "': " + result.error().detail};
