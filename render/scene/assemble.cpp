@@ -1,5 +1,6 @@
 #include "render/scene/assemble.h"
 
+#include "render/scene/chunk_order.h"
 #include "render/scene/flatten.h"
 #include "render/scene/light_lists.h"
 #include "render/scene/scene_error.h"
@@ -8,61 +9,19 @@
 #include <algorithm>
 #include <glm/common.hpp>
 #include <limits>
-#include <tuple>
 
 namespace atlaswire::render {
 
 namespace {
 
-/// Interleaves 10 bits of each axis.
-std::uint32_t morton(const glm::vec3& unit) {
-  std::uint32_t code = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::uint32_t>(glm::clamp(unit[axis], 0.0F, 1.0F) * 1023.0F);
-    for (std::uint32_t bit = 0; bit < 10; ++bit)
-      code |= ((cell >> bit) & 1U) << (3 * bit + static_cast<std::uint32_t>(axis));
-  }
-  return code;
-}
-
-struct SortedGroup {
-  std::uint8_t draw_class = 0;
-  std::uint16_t material = 0;
-  std::uint32_t code = 0;
-  std::uint32_t group = 0;
-  [[nodiscard]] auto key() const { return std::make_tuple(draw_class, material, code, group); }
-};
-
-std::uint8_t class_rank(const PatchClass& c) {
-  return static_cast<std::uint8_t>(static_cast<unsigned>(c.alpha) * 2 + (c.double_sided ? 1 : 0));
-}
-
-std::vector<SortedGroup> order(const FlatMesh& flat, const std::vector<TriangleGroup>& groups,
-                               const std::vector<Material>& materials) {
-  std::vector<SortedGroup> out;
-  out.reserve(groups.size());
-  const glm::vec3 size = glm::max(flat.box.high - flat.box.low, glm::vec3(1e-20F));
-  const float longest = std::max({size.x, size.y, size.z});
-  for (std::uint32_t g = 0; g < groups.size(); ++g) {
-    const TriangleGroup& group = groups[g];
-    const std::uint16_t material = flat.materials[group.triangle];
-    const glm::vec3 middle =
-        0.5F * (flat.vertices[group.corners[0]].position + flat.vertices[group.corners[2]].position);
-    out.push_back(
-        {class_rank(materials[material].draw), material, morton((middle - flat.box.low) / longest), g});
-  }
-  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.key() < b.key(); });
-  return out;
-}
-
 /// Vertices in order of first use by patches, so that neighbours in memory are neighbours in space.
 void renumber_vertices(const FlatMesh& flat, const std::vector<TriangleGroup>& groups,
-                       const std::vector<SortedGroup>& sorted, Scene& scene) {
+                       const std::vector<OrderedGroup>& sorted, Scene& scene) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> numbers(flat.vertices.size(), kUnused);
   scene.vertices.reserve(flat.vertices.size());
   scene.patches.reserve(sorted.size());
-  for (const SortedGroup& s : sorted) {
+  for (const OrderedGroup& s : sorted) {
     const TriangleGroup& group = groups[s.group];
     Patch patch;
     patch.material = s.material;
@@ -99,13 +58,11 @@ void grow(Box& box, const glm::vec3& p) {
   box.high = glm::max(box.high, p);
 }
 
-void cut_chunks(Scene& scene, std::uint32_t most_triangles) {
+void list_chunks(const std::vector<OrderedGroup>& ordered, Scene& scene) {
   std::uint32_t triangle = 0;
   for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
     const Patch& patch = scene.patches[p];
-    const bool fits = !scene.chunks.empty() && scene.chunks.back().material == patch.material &&
-                      scene.chunks.back().triangle_count + patch.triangles <= most_triangles;
-    if (!fits) {
+    if (ordered[p].chunk == scene.chunks.size()) {
       Chunk chunk;
       const glm::vec3 first = scene.vertices[patch.vertices[0]].position;
       chunk.box = {first, first};
@@ -196,9 +153,10 @@ Result<Scene> assemble(SceneSource source, const AssembleSettings& settings) {
     scene.lights.push_back(light.light);
     scene.lights.back().position = glm::vec3(light.position - scene.origin);
   }
-  renumber_vertices(flat, groups, order(flat, groups, scene.materials), scene);
+  const auto ordered = order_by_chunk(flat, groups, scene.materials, settings.chunk_triangles);
+  renumber_vertices(flat, groups, ordered, scene);
   list_triangles(scene);
-  cut_chunks(scene, settings.chunk_triangles);
+  list_chunks(ordered, scene);
   list_lights(scene);
   scene.requirements = require(scene, flat.degenerate_triangles, split);
   return scene;

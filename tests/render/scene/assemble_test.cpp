@@ -56,6 +56,39 @@ TEST(Assemble, ChunksCoverAllPatchesAndTrianglesInOrder) {
   EXPECT_EQ(triangle * 3, scene->indices.size());
 }
 
+TEST(Assemble, ChunksOfASheetAreCompactAndFull) {
+  // A sheet of 100 x 100 squares: chunks of 128 of them cannot have less outline than 11.3 x 11.3 ones.
+  SceneSource source;
+  source.name = "sheet";
+  source.materials.resize(1);
+  source.instances.push_back({0, glm::dmat4(1.0)});
+  SourceMesh sheet;
+  for (int y = 0; y <= 100; ++y) {
+    for (int x = 0; x <= 100; ++x) {
+      sheet.vertices.emplace_back();
+      sheet.vertices.back().position = {x, y, 0};
+      sheet.vertices.back().normal = {0, 0, 1};
+    }
+  }
+  for (std::uint32_t y = 0; y < 100; ++y) {
+    for (std::uint32_t x = 0; x < 100; ++x) {
+      const std::uint32_t a = y * 101 + x;
+      sheet.indices.insert(sheet.indices.end(), {a, a + 1, a + 102, a, a + 102, a + 101});
+    }
+  }
+  source.meshes.push_back(std::move(sheet));
+  const auto scene = assemble(std::move(source));
+  ASSERT_TRUE(scene.has_value());
+  EXPECT_LE(scene->chunks.size(), 20'000U / 200);
+  double area = 0;
+  for (const Chunk& chunk : scene->chunks) {
+    const glm::vec3 side = chunk.box.high - chunk.box.low;
+    area += side.x * side.y;
+    EXPECT_LT(side.x + side.y, 32.0F);
+  }
+  EXPECT_LT(area, 1.15 * 100 * 100) << "boxes overlap little";
+}
+
 TEST(Assemble, PatchesAreSortedByClassAndMaterial) {
   const auto scene = load_scene("atrium:0.02:plants");
   ASSERT_TRUE(scene.has_value());
