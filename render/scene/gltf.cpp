@@ -86,6 +86,10 @@ class Reader {
     if (node.mesh >= 0) {
       if (auto error = place_mesh(node.mesh, to_scene)) return error;
     }
+    const glm::dvec3 place(to_scene[3]);
+    if (!std::isfinite(place.x + place.y + place.z)) {
+      return Error{SceneError::kNotFinite, "place of node " + std::to_string(index)};
+    }
     if (node.camera >= 0 && !has_camera_) place_camera(to_scene);
     if (const auto light = node.extensions.find("KHR_lights_punctual"); light != node.extensions.end()) {
       if (auto error = place_light(light->second, to_scene)) return error;
