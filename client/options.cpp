@@ -59,7 +59,7 @@ void add_connection_options(CLI::App& app, Raw& raw) {
   auto* group = app.add_option_group("Connection");
   group->add_option("--connect", raw.connect, "HOST:PORT of an atlasd; TCP and UDP go to the same port");
   group->add_option("--wait", raw.wait_s, "Seconds to keep trying while nobody listens there, 0..3600");
-  group->add_option("--atlas", raw.wanted_atlas, "Wish for an atlas of WxH texels; the server may decline");
+  group->add_option("--atlas", raw.wanted_atlas, "Wish for an atlas of WxH texels; today's atlasd ignores it");
   group->add_option("--bitrate", raw.wanted_bit_rate, "Wish for a video rate such as 10M");
   group->add_option("--server-fps", raw.wanted_frame_rate,
                     "Wish for this many server frames a second, 1..240");

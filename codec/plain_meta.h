@@ -12,7 +12,7 @@ struct ZSTD_DCtx_s;
 namespace atlaswire::codec {
 
 /// Largest body of a plain update before compression, octets. A decoder refuses more before it allocates.
-inline constexpr std::size_t kMaxPlainMetaBody = std::size_t{32} << 20U;
+inline constexpr std::size_t kMaxPlainMetaBody = kMaxMetaBody;
 
 /// MetaCodecKind::kPlain: ascending ids as differences, positions as differences to the vertex before,
 /// blocks as they are, then zstd where that is smaller. docs/PROTOCOL.md, "Meta update, plain form".

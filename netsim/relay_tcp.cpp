@@ -21,7 +21,7 @@ void abort_socket(tcp::socket& socket) {
 }  // namespace
 
 RelayTcp::RelayTcp(asio::io_context& io, tcp::acceptor acceptor, const tcp::endpoint& target)
-    : io_(io), acceptor_(std::move(acceptor)), target_(target), buffer_(kChunk) {}
+    : io_(io), acceptor_(std::move(acceptor)), retry_(io), target_(target), buffer_(kChunk) {}
 
 void RelayTcp::start(RelayContext& context) {
   context_ = &context;
@@ -31,8 +31,15 @@ void RelayTcp::start(RelayContext& context) {
 void RelayTcp::accept() {
   acceptor_.async_accept([this](const boost::system::error_code& e, tcp::socket socket) {
     if (e == asio::error::operation_aborted) return;
-    if (!e) admit(std::move(socket));
-    accept();
+    if (!e) {
+      admit(std::move(socket));
+      return accept();
+    }
+    // Out of descriptors, most likely: trying again at once would spin.
+    retry_.expires_after(std::chrono::milliseconds(100));
+    retry_.async_wait([this](const boost::system::error_code& cancelled) {
+      if (!cancelled) accept();
+    });
   });
 }
 

@@ -69,6 +69,7 @@ class RelayTcp {
   asio::io_context& io_;
   RelayContext* context_ = nullptr;
   tcp::acceptor acceptor_;
+  asio::steady_timer retry_;  ///< until accepting is tried again after a failure
   tcp::endpoint target_;
   std::map<FlowId, std::unique_ptr<Connection>> connections_;
   std::deque<std::pair<FlowId, Direction>> paused_;

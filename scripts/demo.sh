@@ -6,6 +6,7 @@
 #   --network   a profile of atlas-netsim (wifi6; see atlas-netsim --list)
 # Leaves out/demo/summary.json, stages.csv and pictures (ground truth | client view | atlas).
 set -euo pipefail
+from=$PWD
 cd "$(dirname "$0")/.."
 scene=atrium path= duration=10 network=wifi6
 while [ $# -gt 0 ]; do
@@ -19,6 +20,10 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
+# Files are named from where the user stands.
+[ -f "$from/$scene" ] && scene=$from/$scene
+[ -f "$from/$path" ] && path=$from/$path
+[ -f "$from/$network" ] && network=$from/$network
 scripts/setup.sh
 [ -f build/release/build.ninja ] || cmake --preset release >/dev/null
 cmake --build --preset release -j "$(nproc)" --target atlasd atlas-client atlas-netsim

@@ -12,10 +12,11 @@ scripts/setup.sh
 presets=(asan-ubsan tsan release)
 [ "${1:-}" = --quick ] && presets=(release)
 jobs=$(nproc)
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
 for preset in "${presets[@]}"; do
   echo "== $preset: build"
-  cmake --preset "$preset" >"/tmp/atlaswire-configure.$$" 2>&1 || { cat "/tmp/atlaswire-configure.$$"; exit 1; }
-  rm -f "/tmp/atlaswire-configure.$$"
+  cmake --preset "$preset" >"$log" 2>&1 || { cat "$log"; exit 1; }
   cmake --build --preset "$preset" -j "$jobs"
 done
 for preset in "${presets[@]}"; do

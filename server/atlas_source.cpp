@@ -12,6 +12,11 @@ AtlasSource::AtlasSource(const StreamSettings& settings, render::Device& device,
   auto stream = make_stream();
   warm_up(*stream);
   description_ = describe(*scene_, *stream, settings_);
+  constexpr std::uint32_t kMostNumbered = 1U << 26U;  // docs/PROTOCOL.md, StreamInfo
+  if (scene_->patches.size() > kMostNumbered || scene_->positions.size() > kMostNumbered) {
+    throw ProgramError(ExitCode::kBadScene,
+                       "scene '" + scene_->name + "' has more than 67 million patches or vertices; split it");
+  }
   parameter_sets_ = stream->parameter_sets();
   encoder_name_ = stream->encoder_name();
   spare_ = std::move(stream);

@@ -1,5 +1,6 @@
 #include "server/atlas_stream.h"
 
+#include "proto/framing.h"
 #include "proto/plain_text.h"
 
 #include <algorithm>
@@ -55,7 +56,23 @@ codec::MetaUpdate AtlasStream::update_for(const ViewRequest& request, const rend
   return tracker_.update(rendered.frame, *rendered.change);
 }
 
+namespace {
+
+/// More octets than the plain form of an update can take.
+std::size_t most_bytes(const codec::MetaUpdate& update) {
+  return 64 + update.removed.size() * 5 + update.vertices.size() * 20 + update.added.size() * 48 +
+         update.moved.size() * 20;
+}
+
+Error too_large() {
+  return Error{codec::MetaError::kTooLarge,
+               "the visible set's meta update; a smaller --atlas or a simpler scene shrinks it"};
+}
+
+}  // namespace
+
 Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
+  if (most_bytes(prepared.update) > codec::kMaxMetaBody) return too_large();
   if (prepared.bit_rate) video_.set_bit_rate(*prepared.bit_rate);
   auto picture = video_.encode(view_of(prepared.rendered.picture), prepared.intra);
   if (!picture) return picture.error();
@@ -68,6 +85,8 @@ Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
   frame.meta.reserve(last_meta_bytes_ + last_meta_bytes_ / 4);
   meta_->encode(prepared.update, frame.meta);
   last_meta_bytes_ = frame.meta.size();
+  constexpr std::size_t kRest = 1024;  // of the envelope
+  if (frame.meta.size() > proto::kMaxEnvelope - kRest) return too_large();
   frame.stamps = prepared.stamps;
   FrameReport& report = frame.report;
   report.render = prepared.rendered.timings;

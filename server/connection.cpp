@@ -146,7 +146,13 @@ void Connection::steer_stream() {
     known_address_ = session_.media_address();
     host_.on_address(*this, *known_address_);
   }
-  if (!runner_) runner_ = host_.start_stream(*this);
+  if (!runner_) {
+    try {
+      runner_ = host_.start_stream(*this);
+    } catch (const std::exception& e) {  // no thread to be had
+      return close(proto::Goodbye::Reason::kInternal, e.what());
+    }
+  }
   const auto& pose = session_.newest_pose();
   if (pose && pose->stamped.id != last_pose_) {
     last_pose_ = pose->stamped.id;

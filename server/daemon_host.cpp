@@ -54,11 +54,12 @@ std::unique_ptr<StreamRunner> Daemon::Impl::start_stream(Connection& connection)
       if (const auto target = weak.lock()) target->on_stream_failure(reason);
     });
   };
+  auto stream = std::make_unique<StreamRunner>(runner, std::move(callbacks));
   ++streaming_;
   if (!mirrored_) mirrored_ = connection.session().id();
   spdlog::info("session {}: {} ('{}', {}x{}) streams", value(connection.session().id()), connection.peer(),
                hello.client_name, hello.display.width, hello.display.height);
-  return std::make_unique<StreamRunner>(runner, std::move(callbacks));
+  return stream;
 }
 
 void Daemon::Impl::end_stream(std::unique_ptr<StreamRunner> runner) {

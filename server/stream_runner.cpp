@@ -22,8 +22,8 @@ StreamRunner::StreamRunner(const Settings& settings, Callbacks callbacks)
       callbacks_(std::move(callbacks)),
       cover_(settings.cover, interval_of(settings.max_fps)),
       rate_(settings.bit_rate, settings.encoder_fps),
-      encoder_([this] { encode_loop(); }),
-      renderer_([this](const std::stop_token& stop) { render_loop(stop); }) {}
+      renderer_([this](const std::stop_token& stop) { render_loop(stop); }),
+      encoder_([this] { encode_loop(); }) {}
 
 StreamRunner::~StreamRunner() {
   request_stop();

@@ -91,8 +91,9 @@ class StreamRunner {
   RateFitter rate_;
   std::optional<Time> last_start_;
 
-  std::jthread encoder_;
+  // The renderer first: should the second thread not start, the first one ends on its stop token.
   std::jthread renderer_;
+  std::jthread encoder_;
 };
 
 }  // namespace atlaswire::server

@@ -60,7 +60,11 @@ class Deduplicator {
   std::vector<std::uint32_t> slots_;
 };
 
-bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+/// Finite, and within the 1e9 m that poses and grids may name.
+bool within_reach(const glm::dvec3& v) {
+  constexpr double kFarthest = 1e9;
+  return std::abs(v.x) <= kFarthest && std::abs(v.y) <= kFarthest && std::abs(v.z) <= kFarthest;
+}
 
 glm::dvec3 place(const SourceInstance& instance, const glm::vec3& p) {
   return glm::dvec3(instance.to_scene * glm::dvec4(glm::dvec3(p), 1.0));
@@ -84,7 +88,8 @@ Result<Bounds> bounds_of(const SceneSource& source) {
       return Error{SceneError::kTooLarge, source.name + ": more than 64 million triangles"};
     for (const std::uint32_t index : mesh.indices) {
       const glm::dvec3 p = place(instance, mesh.vertices[index].position);
-      if (!finite(p)) return Error{SceneError::kNotFinite, source.name + ": a vertex position"};
+      if (!within_reach(p))
+        return Error{SceneError::kNotFinite, source.name + ": a vertex position, or it lies beyond 1e9 m"};
       bounds.low = glm::min(bounds.low, p);
       bounds.high = glm::max(bounds.high, p);
     }

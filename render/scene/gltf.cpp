@@ -50,7 +50,7 @@ class Reader {
     }
     if (auto materials = read_materials(model_, out_); materials.has_error()) return materials.error();
     meshes_.resize(model_.meshes.size());
-    visiting_.resize(model_.nodes.size(), false);
+    visited_.resize(model_.nodes.size(), false);
     for (const int root : roots()) {
       if (auto error = visit(root, glm::dmat4(1.0), 0)) return *error;
     }
@@ -67,20 +67,30 @@ class Reader {
       const auto last = static_cast<int>(model_.scenes.size()) - 1;
       return model_.scenes[static_cast<std::size_t>(std::clamp(model_.defaultScene, 0, last))].nodes;
     }
-    std::vector<int> all(model_.nodes.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-    return all;
+    std::vector<bool> is_child(model_.nodes.size(), false);
+    for (const tinygltf::Node& node : model_.nodes) {
+      for (const int child : node.children) {
+        if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
+          is_child[static_cast<std::size_t>(child)] = true;
+      }
+    }
+    std::vector<int> out;
+    for (std::size_t i = 0; i < is_child.size(); ++i) {
+      if (!is_child[i]) out.push_back(static_cast<int>(i));
+    }
+    return out;
   }
 
   std::optional<Error> visit(int index, const glm::dmat4& parent, int depth) {
     if (index < 0 || static_cast<std::size_t>(index) >= model_.nodes.size()) {
       return Error{SceneError::kIndexOutOfRange, "node " + std::to_string(index)};
     }
-    if (depth > kMostDepth || visiting_[static_cast<std::size_t>(index)]) {
-      return Error{SceneError::kMalformed,
-                   "node " + std::to_string(index) + " is its own ancestor or nested too deeply"};
+    if (depth > kMostDepth || visited_[static_cast<std::size_t>(index)]) {
+      return Error{
+          SceneError::kMalformed,
+          "node " + std::to_string(index) + " has two parents, is its own ancestor or is nested too deeply"};
     }
-    visiting_[static_cast<std::size_t>(index)] = true;
+    visited_[static_cast<std::size_t>(index)] = true;
     const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
     const glm::dmat4 to_scene = parent * local_transform(node);
     if (node.mesh >= 0) {
@@ -97,7 +107,6 @@ class Reader {
     for (const int child : node.children) {
       if (auto error = visit(child, to_scene, depth + 1)) return error;
     }
-    visiting_[static_cast<std::size_t>(index)] = false;
     return std::nullopt;
   }
 
@@ -244,7 +253,7 @@ class Reader {
   const tinygltf::Model& model_;
   SceneSource& out_;
   std::vector<std::vector<std::uint32_t>> meshes_;  ///< made of each of the file's, once placed
-  std::vector<bool> visiting_;
+  std::vector<bool> visited_;
   bool has_camera_ = false;
   int ignored_suns_ = 0;
 };

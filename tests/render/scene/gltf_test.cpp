@@ -98,6 +98,19 @@ TEST(Gltf, InstancesThroughTheHierarchyInDouble) {
   EXPECT_EQ(scene->origin, glm::dvec3(1e6, 0.5, 0.0625));
 }
 
+TEST(Gltf, WithoutScenesTheRootsAreTheNodesWithoutParents) {
+  Quad quad;
+  quad.node = R"({"children":[1],"translation":[5,0,0]},{"mesh":0})";
+  std::string text = quad.text();
+  const std::string scenes = R"("scene":0,"scenes":[{"nodes":[0]}],)";
+  text.erase(text.find(scenes), scenes.size());
+  const TempFile file("rootless.gltf", text);
+  const auto scene = load_scene(file.path());
+  ASSERT_TRUE(scene.has_value()) << scene.error().message();
+  EXPECT_EQ(scene->patches.size(), 1U) << "the child is placed once, under its parent";
+  EXPECT_EQ(scene->origin.x, 5.5);
+}
+
 TEST(Gltf, ReadsMaterialsAndLights) {
   Quad quad;
   quad.extra =
@@ -165,6 +178,12 @@ TEST(Gltf, RefusesWhatItCannotShow) {
   Quad cycle;
   cycle.node = R"({"children":[1]},{"children":[0]})";
   EXPECT_EQ(code_of(cycle.load()), SceneError::kMalformed);
+  Quad diamond;  // walked as a tree, each such step would double the work
+  diamond.node = R"({"children":[1,2]},{"children":[3]},{"children":[3]},{"mesh":0})";
+  EXPECT_EQ(code_of(diamond.load()), SceneError::kMalformed);
+  Quad far;
+  far.positions[0] = 2e9F;
+  EXPECT_EQ(code_of(far.load()), SceneError::kNotFinite);
 }
 
 TEST(Gltf, TruncatedAndForeignFilesAreMalformed) {
