@@ -19,7 +19,7 @@ namespace atlaswire::client {
 
 /// What the network thread is to do.
 struct NetworkSettings {
-  Endpoint server;
+  HostPort server;
   Duration wait{};  ///< to keep trying while nobody listens
   SessionSettings session;
   Duration pose_interval = std::chrono::milliseconds(16);

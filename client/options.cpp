@@ -1,4 +1,6 @@
+#include "base/host_port.h"
 #include "base/program.h"
+#include "base/version.h"
 #include "client/settings.h"
 
 #include <fmt/format.h>
@@ -6,13 +8,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <numbers>
 
 namespace atlaswire::client {
 namespace {
-
-constexpr const char* kVersion = "0.1.0";
 
 constexpr const char* kFooter = R"(Examples:
   atlas-client --connect 127.0.0.1:7400
@@ -59,7 +58,8 @@ void add_connection_options(CLI::App& app, Raw& raw) {
   auto* group = app.add_option_group("Connection");
   group->add_option("--connect", raw.connect, "HOST:PORT of an atlasd; TCP and UDP go to the same port");
   group->add_option("--wait", raw.wait_s, "Seconds to keep trying while nobody listens there, 0..3600");
-  group->add_option("--atlas", raw.wanted_atlas, "Wish for an atlas of WxH texels; today's atlasd ignores it");
+  group->add_option("--atlas", raw.wanted_atlas,
+                    "Wish for an atlas of WxH texels; today's atlasd ignores it");
   group->add_option("--bitrate", raw.wanted_bit_rate, "Wish for a video rate such as 10M");
   group->add_option("--server-fps", raw.wanted_frame_rate,
                     "Wish for this many server frames a second, 1..240");
@@ -102,17 +102,10 @@ void add_output_options(CLI::App& app, ClientSettings& s, Raw& raw) {
   group->add_flag("--json-logs", s.log.json, "Log one JSON object a line on stderr");
 }
 
-Endpoint parse_endpoint(const std::string& text) {
-  const auto fail = [&] { refuse("--connect", text, "HOST:PORT or [IPV6]:PORT, port 1..65535"); };
-  const auto colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0) fail();
-  std::string host = text.substr(0, colon);
-  if (host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  unsigned port = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data() + colon + 1, end, port);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0 || port > 65'535 || host.empty()) fail();
-  return {host, static_cast<std::uint16_t>(port)};
+HostPort parse_server(const std::string& text) {
+  auto server = parse_host_port(text);
+  if (!server || server->port == 0) refuse("--connect", text, "HOST:PORT or [IPV6]:PORT, port 1..65535");
+  return *std::move(server);
 }
 
 Duration parse_seconds(const char* option, double seconds, double high) {
@@ -174,11 +167,6 @@ void apply_output(const Raw& raw, ClientSettings& s) {
 
 }  // namespace
 
-std::string to_string(const Endpoint& endpoint) {
-  const bool six = endpoint.host.find(':') != std::string::npos;
-  return fmt::format("{}{}{}:{}", six ? "[" : "", endpoint.host, six ? "]" : "", endpoint.port);
-}
-
 Options parse_options(int argc, const char* const* argv) {
   Options options;
   Raw raw;
@@ -202,7 +190,7 @@ Options parse_options(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& e) {
     throw ProgramError(ExitCode::kUsage, std::string(e.what()) + "; see atlas-client --help");
   }
-  options.settings.server = parse_endpoint(raw.connect);
+  options.settings.server = parse_server(raw.connect);
   apply_wishes(raw, options.settings);
   apply_view(raw, options.settings);
   apply_output(raw, options.settings);

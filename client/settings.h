@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/host_port.h"
 #include "base/log.h"
 #include "base/time.h"
 #include "base/units.h"
@@ -11,17 +12,9 @@
 
 namespace atlaswire::client {
 
-/// Where a server listens, TCP and UDP.
-struct Endpoint {
-  std::string host = "127.0.0.1";
-  std::uint16_t port = 7400;
-};
-/// "HOST:PORT", brackets around an IPv6 address.
-std::string to_string(const Endpoint& endpoint);
-
 /// Everything atlas-client can be told.
 struct ClientSettings {
-  Endpoint server;
+  HostPort server{"127.0.0.1", 7400};
   Duration wait = std::chrono::seconds(5);  ///< for a server to listen
 
   std::string path;  ///< CSV file or built-in name; empty: the built-in one of the server's scene

@@ -56,7 +56,8 @@ struct MetaLimits {
   Extent2D atlas;                          ///< blocks lie inside
 };
 
-/// No codec takes or gives an update of more octets than this before compression; an encoder's caller sees to it.
+/// No codec takes or gives an update of more octets than this before compression; an encoder's caller sees to
+/// it.
 inline constexpr std::size_t kMaxMetaBody = std::size_t{32} << 20U;
 
 /// Turns updates into bytes; one per client stream, may keep state between updates. Not thread-safe.

@@ -1,19 +1,18 @@
 #include "netsim/relay_options.h"
 
+#include "base/host_port.h"
 #include "base/program.h"
+#include "base/version.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <optional>
 
 namespace atlaswire::netsim {
 
 namespace {
-
-constexpr const char* kVersion = "0.1.0";
 
 constexpr const char* kFooter = R"(Examples:
   atlas-netsim --list                                             what networks there are
@@ -49,21 +48,10 @@ struct Raw {
   bool summary = false;
 };
 
-struct HostPort {
-  std::string host;
-  std::uint16_t port = 0;
-};
-
+/// A port alone stands at `default_host`; empty default: it may not stand alone.
 std::optional<HostPort> host_port(const std::string& text, const std::string& default_host) {
-  const auto colon = text.rfind(':');
-  std::string host = colon == std::string::npos ? default_host : text.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  const char* begin = text.data() + (colon == std::string::npos ? 0 : colon + 1);
-  const char* end = text.data() + text.size();
-  unsigned port = 0;
-  const auto parsed = std::from_chars(begin, end, port);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || port > 65'535 || host.empty()) return std::nullopt;
-  return HostPort{host, static_cast<std::uint16_t>(port)};
+  if (text.find(':') != std::string::npos || default_host.empty()) return parse_host_port(text);
+  return parse_host_port(default_host + ":" + text);
 }
 
 void add_relay_options(CLI::App& app, NetsimOptions& o, Raw& raw) {

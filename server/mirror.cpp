@@ -11,7 +11,7 @@ namespace atlaswire::server {
 
 namespace {
 
-udp::endpoint resolve(asio::io_context& io, const MirrorSettings& settings) {
+udp::endpoint resolve(asio::io_context& io, const HostPort& settings) {
   boost::system::error_code e;
   udp::resolver resolver(io);
   const auto found = resolver.resolve(settings.host, std::to_string(settings.port), e);
@@ -24,7 +24,7 @@ udp::endpoint resolve(asio::io_context& io, const MirrorSettings& settings) {
 
 }  // namespace
 
-Mirror::Mirror(asio::io_context& io, const MirrorSettings& settings)
+Mirror::Mirror(asio::io_context& io, const HostPort& settings)
     : to_(resolve(io, settings)), socket_(io, to_.protocol()) {
   socket_.non_blocking(true);
   boost::system::error_code ignored;
@@ -36,8 +36,7 @@ void Mirror::send(ByteView datagram) {
   socket_.send_to(asio::buffer(datagram.data(), datagram.size()), to_, 0, lost);
 }
 
-std::string mirror_sdp(const MirrorSettings& mirror, const std::string& scene,
-                       const ByteBuffer& parameter_sets) {
+std::string mirror_sdp(const HostPort& mirror, const std::string& scene, const ByteBuffer& parameter_sets) {
   asio::io_context io;
   proto::SdpSettings sdp;
   sdp.session_name = "atlaswire " + scene;

@@ -13,7 +13,7 @@ namespace atlaswire::server {
 class Mirror {
  public:
   /// Resolves the host; throws ProgramError (kUsage) when there is none of that name.
-  Mirror(asio::io_context& io, const MirrorSettings& settings);
+  Mirror(asio::io_context& io, const HostPort& settings);
   void send(ByteView datagram);
   /// The receiver's IP address, for the SDP.
   [[nodiscard]] std::string address() const { return to_.address().to_string(); }
@@ -24,7 +24,6 @@ class Mirror {
 };
 
 /// The SDP of the mirrored stream for `mirror`; RFC 8866 text.
-std::string mirror_sdp(const MirrorSettings& mirror, const std::string& scene,
-                       const ByteBuffer& parameter_sets);
+std::string mirror_sdp(const HostPort& mirror, const std::string& scene, const ByteBuffer& parameter_sets);
 
 }  // namespace atlaswire::server

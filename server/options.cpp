@@ -1,4 +1,6 @@
+#include "base/host_port.h"
 #include "base/program.h"
+#include "base/version.h"
 #include "server/settings.h"
 
 #include <fmt/format.h>
@@ -14,7 +16,7 @@ namespace atlaswire::server {
 
 namespace {
 
-constexpr const char* kVersion = "0.1.0";
+constexpr const char* kHostPortRule = "HOST:PORT or [IPV6]:PORT, port 1..65535";
 
 constexpr const char* kFooter = R"(Examples:
   atlasd --scene atrium                       stream the built-in scene on 127.0.0.1:7400
@@ -88,8 +90,9 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
                     "Texels a pixel may get while the atlas has room, 1..8: sharper against more shading");
   group->add_option("--reshade-interval", render.reshade_interval,
                     "Shade each block at least every N-th frame, 1..60: speed against stale reflections");
-  group->add_option("--grid-bits", s.stream.grid_bits,
-                    "Bits an axis of client vertex positions, 8..20, or 0: as many as a step of 2 mm needs, 16 to 20");
+  group->add_option(
+      "--grid-bits", s.stream.grid_bits,
+      "Bits an axis of client vertex positions, 8..20, or 0: as many as a step of 2 mm needs, 16 to 20");
 }
 
 void add_video_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
@@ -216,8 +219,11 @@ void apply_network(const Raw& raw, DaemonSettings& s) {
   s.admission.idle_timeout = parse_seconds("--idle-timeout", raw.idle_timeout_s, 0.1, 3600);
   demand_range("--max-datagram", s.delivery.max_datagram, 200U, 1400U);
   demand_range("--pacing", s.delivery.pacing, 1.0, 100.0);
-  if (!raw.mirror.empty()) s.mirror = parse_endpoint(raw.mirror, "--mirror");
-  if (s.print_sdp && !s.mirror) s.mirror = MirrorSettings{"127.0.0.1", 5004};
+  if (!raw.mirror.empty()) {
+    s.mirror = parse_host_port(raw.mirror);
+    if (!s.mirror || s.mirror->port == 0) refuse("--mirror", raw.mirror, kHostPortRule);
+  }
+  if (s.print_sdp && !s.mirror) s.mirror = HostPort{"127.0.0.1", 5004};
 }
 
 void apply_reports(const Raw& raw, DaemonSettings& s) {
@@ -267,19 +273,6 @@ Options parse_options(int argc, const char* const* argv) {
   apply_reports(raw, options.settings);
   options.mode = mode_of(raw);
   return options;
-}
-
-MirrorSettings parse_endpoint(const std::string& text, const std::string& option) {
-  const auto fail = [&] { refuse(option, text, "HOST:PORT or [IPV6]:PORT, port 1..65535"); };
-  const auto colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0) fail();
-  std::string host = text.substr(0, colon);
-  if (host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  unsigned port = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data() + colon + 1, end, port);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0 || port > 65'535 || host.empty()) fail();
-  return {host, static_cast<std::uint16_t>(port)};
 }
 
 }  // namespace atlaswire::server

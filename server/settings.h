@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/host_port.h"
 #include "base/log.h"
 #include "base/time.h"
 #include "base/units.h"
@@ -28,8 +29,9 @@ struct StreamSettings {
   std::string method = "sas";
   render::MethodSettings render;
   codec::VideoEncoderSettings video;
-  double max_fps = 15;           ///< frames a second that are started at most, > 0
-  std::uint32_t grid_bits = 0;  ///< of the client replica's position grid, 8..20; 0: PositionGrid::suited_bits
+  double max_fps = 15;  ///< frames a second that are started at most, > 0
+  std::uint32_t grid_bits =
+      0;  ///< of the client replica's position grid, 8..20; 0: PositionGrid::suited_bits
   CoverSettings cover;
 };
 
@@ -52,12 +54,6 @@ struct DeliverySettings {
   std::size_t media_queue_bytes = std::size_t{4} << 20U;  ///< a frame that does not fit is dropped whole
 };
 
-/// A receiver beside the clients that gets a copy of the first live stream's RTP.
-struct MirrorSettings {
-  std::string host;
-  std::uint16_t port = 0;
-};
-
 /// Everything `atlasd` can be told; server/options.cpp maps options and TOML keys onto it one to one.
 struct DaemonSettings {
   std::string scene = "atrium";
@@ -68,7 +64,7 @@ struct DaemonSettings {
   std::uint16_t port = 7400;  ///< 0: any free one; TCP and UDP share the number
   AdmissionSettings admission;
   DeliverySettings delivery;
-  std::optional<MirrorSettings> mirror;
+  std::optional<HostPort> mirror;  ///< gets a copy of the first live stream's RTP, beside the clients
   bool print_sdp = false;
   std::string ready_file;        ///< empty: none
   Duration stats_interval = 5s;  ///< 0: no periodic line
@@ -90,8 +86,5 @@ struct Options {
 /// Reads the command line and the file that --config names (the command line wins). Throws ProgramError
 /// (kUsage) with one line that names the option, what was given and what is allowed.
 Options parse_options(int argc, const char* const* argv);
-
-/// "HOST:PORT" or "[V6]:PORT"; throws ProgramError (kUsage) naming `option`.
-MirrorSettings parse_endpoint(const std::string& text, const std::string& option);
 
 }  // namespace atlaswire::server

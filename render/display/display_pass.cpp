@@ -1,6 +1,7 @@
 #include "render/display/display_pass.h"
 
 #include "render/gpu/barriers.h"
+#include "render/gpu/offscreen_target.h"
 #include "render/relative_camera.h"
 #include "shaders/display_layout.h"
 #include "shaders/shaders.h"
@@ -40,26 +41,6 @@ GraphicsSettings pipeline_settings(vk::DescriptorSetLayout layout, Alpha alpha, 
 
 }  // namespace
 
-struct DisplayPass::Targets {
-  Image color;
-  Image depth;
-  Buffer readback;
-
-  Targets(const Device& device, Extent2D extent)
-      : color(device, {.name = "display color",
-                       .extent = extent,
-                       .format = vk::Format::eR8G8B8A8Unorm,
-                       .usage = Usage::eColorAttachment | Usage::eTransferSrc}),
-        depth(device, {.name = "display depth",
-                       .extent = extent,
-                       .format = vk::Format::eD32Sfloat,
-                       .usage = Usage::eDepthStencilAttachment}),
-        readback(device, {.name = "display readback",
-                          .size = extent.area() * 4,
-                          .usage = vk::BufferUsageFlagBits::eTransferDst,
-                          .residence = Residence::kReadback}) {}
-};
-
 DisplayPass::DisplayPass(Device& device, const AtlasTexture& atlas, const glm::vec3& background)
     : context_(device, "display", 1),
       atlas_(&atlas),
@@ -89,8 +70,8 @@ void DisplayPass::draw(const DisplayMesh& mesh, std::uint32_t slot, const Camera
 }
 
 void DisplayPass::prepare(const DisplayMesh& mesh, const Camera& camera) {
-  if (targets_ == nullptr || targets_->color.extent() != camera.extent) {
-    targets_ = std::make_unique<Targets>(context_.device(), camera.extent);
+  if (target_ == nullptr || target_->color.extent() != camera.extent) {
+    target_ = std::make_unique<OffscreenTarget>(context_.device(), "display", camera.extent);
   }
   mesh.sort_blended(glm::vec3{camera.pose.position - mesh.origin()}, sorted_);
   if (sorted_.empty()) return;
@@ -107,7 +88,7 @@ void DisplayPass::prepare(const DisplayMesh& mesh, const Camera& camera) {
 
 void DisplayPass::record(const vk::raii::CommandBuffer& commands, const DisplayMesh& mesh, std::uint32_t slot,
                          const Camera& camera) {
-  Targets& t = *targets_;
+  OffscreenTarget& t = *target_;
   discard_image(commands, t.color, ImageUse::kColorTarget);
   discard_image(commands, t.depth, ImageUse::kDepthTarget);
   const vk::RenderingAttachmentInfo color{
@@ -163,8 +144,8 @@ void DisplayPass::draw_classes(const vk::raii::CommandBuffer& commands, const Di
 }
 
 const Picture& DisplayPass::read_back() {
-  if (targets_ == nullptr) return picture_;
-  Targets& t = *targets_;
+  if (target_ == nullptr) return picture_;
+  OffscreenTarget& t = *target_;
   const Extent2D extent = t.color.extent();
   if (picture_.extent != extent) picture_ = Picture(extent);
   context_.run([&](const vk::raii::CommandBuffer& commands) {

@@ -14,6 +14,8 @@
 
 namespace atlaswire::render {
 
+struct OffscreenTarget;
+
 /// The client's redraw of pre-shaded triangles for its newest pose ([SAS] 3.6): one draw for a scene of
 /// opaque single-sided patches, one more for each other class that occurs. One thread at a time.
 class DisplayPass {
@@ -29,7 +31,6 @@ class DisplayPass {
   const Picture& read_back();
 
  private:
-  struct Targets;
   const Pipeline& pipeline(PatchClass::Alpha alpha, bool double_sided);
   void prepare(const DisplayMesh& mesh, const Camera& camera);
   void record(const vk::raii::CommandBuffer& commands, const DisplayMesh& mesh, std::uint32_t slot,
@@ -44,7 +45,7 @@ class DisplayPass {
   DescriptorLayout layout_;
   DescriptorSets sets_;                                                ///< by slot
   std::array<std::array<std::unique_ptr<Pipeline>, 2>, 3> pipelines_;  ///< made when first needed
-  std::unique_ptr<Targets> targets_;                                   ///< of the last camera's extent
+  std::unique_ptr<OffscreenTarget> target_;                            ///< of the last camera's extent
   std::vector<std::uint32_t> sorted_;                                  ///< indices of blended triangles
   std::optional<Buffer> sorted_buffer_;
   Picture picture_;

@@ -1,6 +1,7 @@
 #include "render/passes/forward.h"
 
 #include "render/gpu/barriers.h"
+#include "render/gpu/offscreen_target.h"
 #include "render/passes/frustum.h"
 #include "render/passes/tonemap.h"
 #include "render/relative_camera.h"
@@ -49,26 +50,6 @@ float distance2_of(const Scene& scene, const Patch& patch, const glm::vec3& eye)
 
 }  // namespace
 
-struct ForwardPass::Targets {
-  Image color;
-  Image depth;
-  Buffer readback;
-
-  Targets(const Device& device, Extent2D extent)
-      : color(device, {.name = "forward color",
-                       .extent = extent,
-                       .format = vk::Format::eR8G8B8A8Unorm,
-                       .usage = Usage::eColorAttachment | Usage::eTransferSrc}),
-        depth(device, {.name = "forward depth",
-                       .extent = extent,
-                       .format = vk::Format::eD32Sfloat,
-                       .usage = Usage::eDepthStencilAttachment}),
-        readback(device, {.name = "forward readback",
-                          .size = extent.area() * 4,
-                          .usage = vk::BufferUsageFlagBits::eTransferDst,
-                          .residence = Residence::kReadback}) {}
-};
-
 ForwardPass::ForwardPass(Device& device, const SceneGpu& scene)
     : context_(device, "forward", 1),
       scene_(&scene),
@@ -80,17 +61,17 @@ ForwardPass::~ForwardPass() = default;
 Picture ForwardPass::render(const Camera& camera) {
   Picture picture(camera.extent);
   if (picture.empty()) return picture;
-  if (targets_ == nullptr || targets_->color.extent() != camera.extent) {
-    targets_ = std::make_unique<Targets>(context_.device(), camera.extent);
+  if (target_ == nullptr || target_->color.extent() != camera.extent) {
+    target_ = std::make_unique<OffscreenTarget>(context_.device(), "forward", camera.extent);
   }
   context_.run([&](const vk::raii::CommandBuffer& commands) { record(commands, camera); });
-  targets_->readback.invalidate();
-  std::memcpy(picture.rgba.data(), targets_->readback.mapped().data(), picture.rgba.size());
+  target_->readback.invalidate();
+  std::memcpy(picture.rgba.data(), target_->readback.mapped().data(), picture.rgba.size());
   return picture;
 }
 
 void ForwardPass::record(const vk::raii::CommandBuffer& commands, const Camera& camera) {
-  Targets& t = *targets_;
+  OffscreenTarget& t = *target_;
   const Scene& scene = scene_->scene();
   const glm::vec3 sky = display_color(scene.background, scene.exposure);
   discard_image(commands, t.color, ImageUse::kColorTarget);

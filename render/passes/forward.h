@@ -9,6 +9,8 @@
 
 namespace atlaswire::render {
 
+struct OffscreenTarget;
+
 /// The ground truth: a scene drawn for a camera with the same materials that shade the atlas, depth test,
 /// glTF's culling, masks discarded, and blended patches over them from far to near. One thread at a time.
 class ForwardPass {
@@ -20,7 +22,6 @@ class ForwardPass {
   Picture render(const Camera& camera);
 
  private:
-  struct Targets;
   void record(const vk::raii::CommandBuffer& commands, const Camera& camera);
   void draw_scene(const vk::raii::CommandBuffer& commands, const Camera& camera);
 
@@ -28,7 +29,7 @@ class ForwardPass {
   const SceneGpu* scene_;
   MaterialPipelines pipelines_;
   std::vector<std::uint32_t> first_triangle_;  ///< of each patch
-  std::unique_ptr<Targets> targets_;           ///< of the last camera's extent
+  std::unique_ptr<OffscreenTarget> target_;    ///< of the last camera's extent
 };
 
 }  // namespace atlaswire::render

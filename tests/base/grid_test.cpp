@@ -60,7 +60,9 @@ TEST(PositionGrid, BoxOfNoSizeHasAStep) {
 }
 
 TEST(PositionGrid, SuitedBitsKeepTheStepBelowTwoMillimetres) {
-  const auto bits = [](double side) { return PositionGrid::suited_bits(glm::dvec3(0), glm::dvec3(side, 1, 1)); };
+  const auto bits = [](double side) {
+    return PositionGrid::suited_bits(glm::dvec3(0), glm::dvec3(side, 1, 1));
+  };
   EXPECT_EQ(bits(30), 16U);
   EXPECT_EQ(bits(200), 17U);
   EXPECT_EQ(bits(1500), 20U);

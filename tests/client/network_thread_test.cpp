@@ -28,10 +28,10 @@ struct Listener {
   udp::socket datagrams{io,
                         udp::endpoint(asio::ip::address_v4::loopback(), acceptor.local_endpoint().port())};
 
-  [[nodiscard]] Endpoint endpoint() const { return {"127.0.0.1", acceptor.local_endpoint().port()}; }
+  [[nodiscard]] HostPort endpoint() const { return {"127.0.0.1", acceptor.local_endpoint().port()}; }
 };
 
-NetworkSettings settings_for(const Endpoint& server) {
+NetworkSettings settings_for(const HostPort& server) {
   NetworkSettings s{.server = server};
   s.sample_pose = [](Time) { return std::optional(Pose{}); };
   return s;
@@ -63,7 +63,7 @@ proto::ServerHello some_answer() {
 }
 
 TEST(NetworkThread, SaysThatNobodyListens) {
-  Endpoint server;
+  HostPort server;
   {
     const Listener gone;
     server = gone.endpoint();

@@ -1,9 +1,9 @@
+#include "render/scene/camera_path.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
-
-#include "render/scene/camera_path.h"
 
 /// Any text: a path whose every pose is sane, or an error.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -170,7 +170,7 @@ TEST(Daemon, MirrorGetsTheFirstStreamsPackets) {
   ASSERT_EQ(::bind(receiver, reinterpret_cast<sockaddr*>(&address), size), 0);
   ASSERT_EQ(::getsockname(receiver, reinterpret_cast<sockaddr*>(&address), &size), 0);
   auto settings = quick_settings();
-  settings.mirror = MirrorSettings{"localhost", ntohs(address.sin_port)};
+  settings.mirror = HostPort{"localhost", ntohs(address.sin_port)};
   settings.mirror->host = "127.0.0.1";
   RunningDaemon daemon(settings, source);
   RawClient client(daemon.port());
