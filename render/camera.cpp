@@ -35,6 +35,12 @@ Camera enlarged(const Camera& camera, double scale) {
   return large;
 }
 
+Pose eye_pose(const Pose& head, double offset) {
+  Pose eye = head;
+  eye.position += head.orientation * glm::dvec3{offset, 0, 0};
+  return eye;
+}
+
 std::vector<Pose> predicted_poses(const Pose& now, Duration cover, Duration step, std::uint32_t max_views) {
   AW_ASSERT(max_views >= 1);
   std::vector<Pose> poses{now};

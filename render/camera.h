@@ -29,6 +29,9 @@ glm::mat3 view_rotation(const Pose& pose);
 /// ([SAS] 5: "enlarge the FOV by 20%"): tangents and extents grow by `scale`; sides are rounded up to even.
 Camera enlarged(const Camera& camera, double scale);
 
+/// The pose of an eye `offset` metres to the right of `head`, looking the same way.
+Pose eye_pose(const Pose& head, double offset);
+
 /// The poses whose visible sets are united ([SAS] 3.1): now, then linear predictions at equal steps of at
 /// most `step` up to `cover`, both ends included; just now when `cover` is not positive. At most
 /// `max_views` of them, steps stretched to fit.

@@ -10,7 +10,9 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,12 +20,20 @@ namespace atlaswire::render {
 
 class Device;
 
+/// What a caller may know of a view beyond its pose.
+struct ViewHints {
+  double eye_separation = 0;   ///< metres; above 0 two eyes look, half of it to the left and to the right
+  std::vector<Pose> foreseen;  ///< poses that will be displayed: stand in for prediction; empty: unknown
+  std::optional<glm::dvec3> shading_eye;  ///< where highlights are seen from; nullopt: the camera's position
+};
+
 /// What one frame is to show: the viewer's newest pose and how far ahead clients may still be drawing it.
 struct FrameRequest {
   FrameId frame{};
   Camera camera;
   Duration cover{};    ///< predict up to this far ahead
   bool intra = false;  ///< the encoder will make an I-frame of it
+  ViewHints hints;
 };
 
 /// How long each of a method's stages took; zero where a stage does not apply.

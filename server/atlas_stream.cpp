@@ -42,7 +42,8 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
   prepared.bit_rate = request.bit_rate;
   prepared.stamps.pose_received = request.pose_received;
   prepared.intra = schedule_.next();
-  prepared.rendered = method_->render({next_frame_, request.camera, request.cover, prepared.intra});
+  prepared.rendered =
+      method_->render({next_frame_, request.camera, request.cover, prepared.intra, request.hints});
   prepared.update = update_for(request, prepared.rendered);
   prepared.rendered.change = nullptr;
   next_frame_ = next(next_frame_);

@@ -23,6 +23,7 @@ struct ViewRequest {
   bool refresh = false;  ///< somebody lost a picture: make an I-frame, however recent the last
   bool restart = false;  ///< somebody knows nothing yet: an I-frame, and a meta update that tells all
   std::optional<BitRate> bit_rate;  ///< from this frame on
+  render::ViewHints hints;
 };
 
 /// A frame between rendering and encoding. `rendered.picture` borrows from the method's ring.

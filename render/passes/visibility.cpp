@@ -106,9 +106,9 @@ void VisibilityPass::find_known_chunks() {
   }
 }
 
-void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camera& camera, Duration cover) {
-  const std::vector<Pose> poses =
-      predicted_poses(camera.pose, cover, settings_.prediction_step, settings_.max_views);
+void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camera& camera,
+                            std::span<const Pose> poses) {
+  AW_ASSERT(!poses.empty() && poses.size() <= settings_.max_views);
   Camera view = enlarged(camera, settings_.fov_scale);
   view.extent = scaled(view.extent, settings_.id_scale);
   make_targets(view.extent);

@@ -23,9 +23,8 @@ namespace atlaswire::render {
 struct VisibilitySettings {
   double fov_scale = 1.2;       ///< >= 1; room for rotation against larger visible sets
   double id_scale = 1.0;        ///< > 0; id pixels per display pixel along a side
-  std::uint32_t max_views = 2;  ///< >= 1
-  Duration prediction_step = std::chrono::microseconds(33'333);
-  bool occlusion = true;  ///< drop hidden chunks before their vertices are transformed; same picture
+  std::uint32_t max_views = 2;  ///< >= 1; poses a frame
+  bool occlusion = true;        ///< drop hidden chunks before their vertices are transformed; same picture
 };
 
 /// What one frame's recording amounts to.
@@ -35,9 +34,9 @@ struct VisibilityStats {
   std::uint32_t chunks_tested = 0;   ///< of these, drawn only if the occlusion test lets them; also summed
 };
 
-/// The potentially visible set ([SAS] 3.1): id buffers of the current pose and of linearly predicted ones,
-/// each with an enlarged field of view and reversed-Z depth; patches marked in compute; and for each marked
-/// patch the size that it wants in the atlas, seen from the current pose.
+/// The potentially visible set ([SAS] 3.1): id buffers of several poses, each with an enlarged field of view
+/// and reversed-Z depth; patches marked in compute; and for each marked patch the size that it wants in the
+/// atlas, seen from the current pose.
 ///
 /// Chunks that showed something in the last frame are drawn first; of the others only those which could show
 /// behind what is then there. That drops no visible pixel; but where two surfaces have equal depth, the one
@@ -47,8 +46,9 @@ class VisibilityPass {
  public:
   VisibilityPass(Device& device, const SceneGpu& scene, const VisibilitySettings& settings);
 
-  /// Records one frame. All that was recorded before must have finished on the device.
-  void record(const vk::raii::CommandBuffer& commands, const Camera& camera, Duration cover);
+  /// Records one frame: what any of `poses` (1 to max_views of them) sees, sized for `camera`. All that was
+  /// recorded before must have finished on the device.
+  void record(const vk::raii::CommandBuffer& commands, const Camera& camera, std::span<const Pose> poses);
 
   /// One word a patch (shaders/level_layout.h), after the recorded work has been waited for.
   [[nodiscard]] std::span<const std::uint32_t> levels() const;

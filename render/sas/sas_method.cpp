@@ -21,10 +21,25 @@ MethodSettings checked(MethodSettings settings) {
 }
 
 VisibilitySettings visibility_settings(const MethodSettings& s) {
-  return {.fov_scale = s.fov_scale,
-          .id_scale = s.id_scale,
-          .max_views = s.max_views,
-          .prediction_step = s.prediction_step};
+  constexpr std::uint32_t kEyes = 2;
+  return {.fov_scale = s.fov_scale, .id_scale = s.id_scale, .max_views = kEyes * s.max_views};
+}
+
+/// Where the visible sets that the frame unites are seen from.
+std::vector<Pose> viewpoints(const FrameRequest& request, const MethodSettings& s) {
+  const ViewHints& hints = request.hints;
+  std::vector<Pose> heads = hints.foreseen;
+  heads.resize(std::min<std::size_t>(heads.size(), s.max_views));
+  if (heads.empty()) {
+    heads = predicted_poses(request.camera.pose, request.cover, s.prediction_step, s.max_views);
+  }
+  if (!(hints.eye_separation > 0)) return heads;
+  std::vector<Pose> eyes;
+  for (const Pose& head : heads) {
+    eyes.push_back(eye_pose(head, -hints.eye_separation / 2));
+    eyes.push_back(eye_pose(head, hints.eye_separation / 2));
+  }
+  return eyes;
 }
 
 LevelSettings level_settings(const MethodSettings& s) {
@@ -92,7 +107,7 @@ RenderedFrame SasMethod::render(const FrameRequest& request) {
 }
 
 void SasMethod::find_visible(const FrameRequest& request) {
-  visibility_.record(context_.begin(), request.camera, request.cover);
+  visibility_.record(context_.begin(), request.camera, viewpoints(request, settings_));
   context_.wait(context_.submit());
 }
 
@@ -140,7 +155,8 @@ std::uint64_t SasMethod::shade(const FrameRequest& request, std::uint32_t slot, 
   const auto& commands = context_.begin();
   timer_.reset(commands);
   if (request.intra) clear_freed(commands);
-  const std::uint64_t texels = shading_.record(commands, stale_, request.camera.pose.position, frames_ == 0);
+  const std::uint64_t texels = shading_.record(
+      commands, stale_, request.hints.shading_eye.value_or(request.camera.pose.position), frames_ == 0);
   use_image(commands, shading_.atlas(), ImageUse::kSampledInCompute);
   timer_.begin(commands, "conversion");
   conversion_.record(commands, slot);

@@ -65,6 +65,35 @@ class Sas : public test::GpuTest {
   }
 };
 
+TEST_F(Sas, TwoEyesSeePastWhatHidesAPatchFromTheMiddle) {
+  test::TinyScene scene;
+  scene.material(kOpaque);
+  scene.wall(-0.01F, -0.2F, 0.01F, 0.2F, -0.5F);
+  const PatchId behind = scene.wall(-0.02F, -0.1F, 0.02F, 0.1F, -2);
+  const auto made = scene.finish();
+  FrameRequest r{.frame = FrameId{0}, .intra = true};
+  r.camera.extent = {160, 120};
+  EXPECT_EQ(SasMethod(device(), made, small()).render(r).visible_patches, 1U);
+  r.hints.eye_separation = 0.1;
+  SasMethod both(device(), made, small());
+  EXPECT_EQ(both.render(r).visible_patches, 2U);
+  EXPECT_NE(both.levels()[value(behind)], 0U);
+}
+
+TEST_F(Sas, ForeseenPosesStandInForPrediction) {
+  const auto scene = corridor(false);
+  FrameRequest r{.frame = FrameId{0}, .intra = true};
+  r.camera.extent = {160, 120};
+  r.camera.pose.position = {0, 0, -6};
+  r.cover = std::chrono::milliseconds(60);
+  SasMethod method(device(), scene, small());
+  const std::uint32_t ahead = method.render(r).visible_patches;
+  Pose back = r.camera.pose;
+  back.orientation = glm::dquat{0, 0, 1, 0};  // half a turn about +Y
+  r.hints.foreseen = {r.camera.pose, back};
+  EXPECT_GT(SasMethod(device(), scene, small()).render(r).visible_patches, ahead);
+}
+
 TEST_F(Sas, EveryVisiblePatchHoldsAShadedBlock) {
   const auto scene = corridor(false);
   SasMethod method(device(), scene, small());

@@ -22,6 +22,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using visibility::kNoPatch;
 
+constexpr Duration kStep = std::chrono::microseconds(33'333);
 constexpr PatchClass kOpaque{};
 constexpr PatchClass kDoubleSided{.double_sided = true};
 constexpr PatchClass kMask{.alpha = PatchClass::Alpha::kMask};
@@ -46,10 +47,15 @@ class Visibility : public test::GpuTest {
   class Viewer {
    public:
     Viewer(std::shared_ptr<const Scene> scene, const VisibilitySettings& settings)
-        : scene_(device(), std::move(scene)), pass_(device(), scene_, settings), context_(device(), "view") {}
+        : scene_(device(), std::move(scene)),
+          pass_(device(), scene_, settings),
+          max_views_(settings.max_views),
+          context_(device(), "view") {}
 
     Seen see(const Camera& camera, Duration cover = {}) {
-      context_.run([&](const vk::raii::CommandBuffer& commands) { pass_.record(commands, camera, cover); });
+      context_.run([&](const vk::raii::CommandBuffer& commands) {
+        pass_.record(commands, camera, predicted_poses(camera.pose, cover, kStep, max_views_));
+      });
       Seen seen;
       const auto levels = pass_.levels();
       seen.words.assign(levels.begin(), levels.end());
@@ -86,6 +92,7 @@ class Visibility : public test::GpuTest {
 
     SceneGpu scene_;
     VisibilityPass pass_;
+    std::uint32_t max_views_;
     SubmitContext context_;
   };
 
