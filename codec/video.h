@@ -24,14 +24,14 @@ struct I420View {
 
 /// Settings of an H.264 encoder ([SAS] 3.4, 5.8). CAVLC, one reference, no B-frames, no look-ahead always.
 struct VideoEncoderSettings {
-  Extent2D extent;                    ///< both sides even
-  double frame_rate = 15;             ///< nominal, for rate control
-  BitRate bit_rate{10'000'000};       ///< 0: constant quantizer `qp`
-  int qp = 20;                        ///< 0..51, used when bit_rate is 0
-  std::uint32_t intra_interval = 5;   ///< frames from IDR to IDR; 0: only when asked
-  std::string preset = "ultrafast";   ///< of x264
-  std::string encoder = "auto";       ///< "auto", "h264_nvenc", "h264_vaapi", "libx264"
-  std::uint32_t threads = 2;          ///< slices encoded side by side; adds no delay
+  Extent2D extent;                   ///< both sides even
+  double frame_rate = 15;            ///< nominal, for rate control
+  BitRate bit_rate{10'000'000};      ///< 0: constant quantizer `qp`
+  int qp = 20;                       ///< 0..51, used when bit_rate is 0
+  std::uint32_t intra_interval = 5;  ///< frames from IDR to IDR; 0: only when asked
+  std::string preset = "ultrafast";  ///< of x264
+  std::string encoder = "auto";  ///< "auto", "h264_nvenc", "h264_vaapi", "libx264"; "raw": see VideoCoding
+  std::uint32_t threads = 2;     ///< slices encoded side by side; adds no delay
   std::uint32_t max_slice_bytes = 0;  ///< 0: one slice a thread
 };
 
@@ -42,7 +42,8 @@ struct EncodedPicture {
   std::int64_t index = 0;  ///< the number given to `encode`
 };
 
-/// H.264 through libavcodec, no delay: every picture given comes back at once. One thread at a time.
+/// H.264 through libavcodec, no delay: every picture given comes back at once. Encoder "raw" makes
+/// VideoCoding::kRaw. One thread at a time.
 class VideoEncoder {
  public:
   /// Tries the named encoder, or each of the hardware ones and then libx264 for "auto"; an encoder that
@@ -68,6 +69,9 @@ class VideoEncoder {
   std::unique_ptr<Impl> impl_;
 };
 
+/// What a stream's pictures are: H.264, or bare planes that show what coding costs (never on a network).
+enum class VideoCoding : std::uint8_t { kH264, kRaw };
+
 /// A decoded picture; owns its planes until destroyed.
 class DecodedPicture {
  public:
@@ -83,11 +87,12 @@ class DecodedPicture {
   std::unique_ptr<Impl> impl_;
 };
 
-/// H.264 decoder, no delay. Hostile bytes give an Error, never a crash; the caller then waits for an IDR.
+/// Decoder, no delay. Hostile bytes give an Error, never a crash; the caller then waits for an IDR.
 class VideoDecoder {
  public:
   /// `max_extent`: larger pictures are refused. `threads`: slice threads.
-  explicit VideoDecoder(Extent2D max_extent, std::uint32_t threads = 1);
+  explicit VideoDecoder(Extent2D max_extent, std::uint32_t threads = 1,
+                        VideoCoding coding = VideoCoding::kH264);
   ~VideoDecoder();
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;

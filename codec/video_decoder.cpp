@@ -1,6 +1,7 @@
 #include "base/assert.h"
 #include "codec/av_support.h"
 #include "codec/gap_detector.h"
+#include "codec/raw_picture.h"
 #include "codec/video.h"
 
 extern "C" {
@@ -41,11 +42,13 @@ struct VideoDecoder::Impl {
   ByteBuffer padded;  // libav reads past the end
   Extent2D max_extent;
   std::uint32_t threads = 1;
+  VideoCoding coding = VideoCoding::kH264;
   std::optional<VideoError> refusal;  // why get_format refused, if it did
 
   void open();
 
   static AVPixelFormat choose_format(AVCodecContext* context, const AVPixelFormat* offered);
+  Result<AvFrame> decode_h264(ByteView access_unit);
   Result<AvFrame> receive_last();
   Result<AvFrame> give_up(VideoError why);
 };
@@ -87,10 +90,12 @@ void VideoDecoder::Impl::open() {
   AW_ASSERT(code >= 0);
 }
 
-VideoDecoder::VideoDecoder(Extent2D max_extent, std::uint32_t threads) : impl_(std::make_unique<Impl>()) {
+VideoDecoder::VideoDecoder(Extent2D max_extent, std::uint32_t threads, VideoCoding coding)
+    : impl_(std::make_unique<Impl>()) {
   route_av_log();
   impl_->max_extent = max_extent;
   impl_->threads = std::clamp(threads, 1U, 16U);
+  impl_->coding = coding;
   impl_->packet.reset(av_packet_alloc());
   if (!impl_->packet) throw std::bad_alloc();
   impl_->open();
@@ -123,20 +128,25 @@ Result<AvFrame> VideoDecoder::Impl::receive_last() {
   return last;
 }
 
-Result<DecodedPicture> VideoDecoder::decode(ByteView access_unit) {
-  Impl& self = *impl_;
+Result<AvFrame> VideoDecoder::Impl::decode_h264(ByteView access_unit) {
   if (access_unit.empty()) return VideoError::kNoPicture;
   if (access_unit.size() > std::numeric_limits<int>::max() / 2) return VideoError::kTooLarge;
-  self.refusal.reset();
-  const GapDetector::Verdict verdict = self.gaps.inspect(access_unit);
+  refusal.reset();
+  const GapDetector::Verdict verdict = gaps.inspect(access_unit);
   if (verdict == GapDetector::Verdict::kNoReference) return VideoError::kNoPicture;
-  if (verdict == GapDetector::Verdict::kGap) return self.give_up(VideoError::kCorrupt).error();
-  self.padded.assign(access_unit.begin(), access_unit.end());
-  self.padded.resize(access_unit.size() + AV_INPUT_BUFFER_PADDING_SIZE);
-  self.packet->data = reinterpret_cast<std::uint8_t*>(self.padded.data());
-  self.packet->size = static_cast<int>(access_unit.size());
-  const int code = avcodec_send_packet(self.context.get(), self.packet.get());
-  Result<AvFrame> frame = code < 0 ? self.give_up(VideoError::kCorrupt) : self.receive_last();
+  if (verdict == GapDetector::Verdict::kGap) return give_up(VideoError::kCorrupt).error();
+  padded.assign(access_unit.begin(), access_unit.end());
+  padded.resize(access_unit.size() + AV_INPUT_BUFFER_PADDING_SIZE);
+  packet->data = reinterpret_cast<std::uint8_t*>(padded.data());
+  packet->size = static_cast<int>(access_unit.size());
+  const int code = avcodec_send_packet(context.get(), packet.get());
+  return code < 0 ? give_up(VideoError::kCorrupt) : receive_last();
+}
+
+Result<DecodedPicture> VideoDecoder::decode(ByteView access_unit) {
+  Impl& self = *impl_;
+  Result<AvFrame> frame = self.coding == VideoCoding::kRaw ? read_raw_picture(access_unit, self.max_extent)
+                                                           : self.decode_h264(access_unit);
   if (!frame) return frame.error();
   const AVFrame& f = **frame;
   const bool planar = (f.format == AV_PIX_FMT_YUV420P || f.format == AV_PIX_FMT_YUVJ420P) &&

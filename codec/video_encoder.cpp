@@ -1,6 +1,7 @@
 #include "base/program.h"
 #include "codec/annex_b.h"
 #include "codec/h264_backend.h"
+#include "codec/raw_picture.h"
 #include "codec/video.h"
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ namespace atlaswire::codec {
 namespace {
 
 constexpr const char* kSoftware = "libx264";
+constexpr const char* kRaw = "raw";
 constexpr std::array kPresets{"ultrafast", "superfast", "veryfast", "faster",   "fast",
                               "medium",    "slow",      "slower",   "veryslow", "placebo"};
 
@@ -42,13 +44,14 @@ void check(const VideoEncoderSettings& settings) {
 struct VideoEncoder::Impl {
   VideoEncoderSettings settings;
   std::string name;
-  std::unique_ptr<H264Backend> backend;
+  std::unique_ptr<H264Backend> backend;  // null: raw
   ByteBuffer parameter_sets;
   std::int64_t next_index = 0;
   std::uint32_t since_idr = 0;  // pictures since the last IDR, that one included
   bool fresh = true;            // the backend has encoded nothing yet
 
   void open_best();
+  Result<EncodedPicture> encode_h264(const I420View& picture, bool idr);
   bool try_open(const std::string& candidate, spdlog::level::level_enum severity);
   void reopen();
 };
@@ -65,6 +68,10 @@ bool VideoEncoder::Impl::try_open(const std::string& candidate, spdlog::level::l
 }
 
 void VideoEncoder::Impl::open_best() {
+  if (settings.encoder == kRaw) {
+    name = kRaw;
+    return;
+  }
   const bool automatic = settings.encoder == "auto";
   if (automatic) {
     // Missing hardware is the ordinary case: no warning.
@@ -109,24 +116,36 @@ Result<EncodedPicture> VideoEncoder::encode(const I420View& picture, bool force_
   Impl& self = *impl_;
   if (picture.extent != self.settings.extent) return VideoError::kWrongExtent;
   const bool idr = force_intra || next_is_intra();
-  const Result<const AVPacket*> packet = self.backend->encode(picture, idr, self.next_index);
+  Result<EncodedPicture> out = EncodedPicture{};
+  if (self.backend == nullptr) {
+    write_raw_picture(picture, out->bytes);
+    out->idr = idr;
+  } else {
+    out = self.encode_h264(picture, idr);
+    if (!out) return out;
+  }
+  out->index = self.next_index++;
+  self.since_idr = out->idr ? 1 : self.since_idr + 1;
+  self.fresh = false;
+  return out;
+}
+
+Result<EncodedPicture> VideoEncoder::Impl::encode_h264(const I420View& picture, bool idr) {
+  const Result<const AVPacket*> packet = backend->encode(picture, idr, next_index);
   if (!packet) return packet.error();
   EncodedPicture out;
   const auto* data = reinterpret_cast<const std::byte*>((*packet)->data);
   out.bytes.assign(data, data + (*packet)->size);
-  out.index = self.next_index++;
   out.idr = contains_idr(out.bytes);
   if (idr && !out.idr) return Error{VideoError::kEncoderFailed, "an IDR picture was refused"};
-  self.since_idr = out.idr ? 1 : self.since_idr + 1;
-  self.fresh = false;
-  if (out.idr) self.parameter_sets = parameter_sets_of(out.bytes);
+  if (out.idr) parameter_sets = parameter_sets_of(out.bytes);
   return out;
 }
 
 void VideoEncoder::set_bit_rate(BitRate rate) {
   if (rate == impl_->settings.bit_rate) return;
   impl_->settings.bit_rate = rate;
-  if (!impl_->backend->set_bit_rate(impl_->settings)) impl_->reopen();
+  if (impl_->backend != nullptr && !impl_->backend->set_bit_rate(impl_->settings)) impl_->reopen();
 }
 
 const std::string& VideoEncoder::name() const { return impl_->name; }
