@@ -83,7 +83,7 @@ class Viewer {
     PairRenderer renderer(*device_, stream, display.camera);
     std::optional<PictureWriter> writer;
     if (settings_.png_every != 0) writer.emplace();
-    DecodeThread decoder(stream, settings_.decoder_threads, arrivals_, pairs_,
+    DecodeThread decoder(stream, {.threads = settings_.decoder_threads}, arrivals_, pairs_,
                          {.decode_failed = [this] { network_->decode_failed(); },
                           .peer_broke = [this](std::string why) { network_->fail(std::move(why)); }});
     const CloseAtExit close{arrivals_};  // or the decode thread would never end

@@ -24,7 +24,7 @@ struct DecodeThreadTest : ::testing::Test {
   DecodeCounts run(std::vector<Arrival> input) {
     for (Arrival& a : input) EXPECT_TRUE(arrivals.try_push(std::move(a)));
     arrivals.close();
-    DecodeThread decoder(square_stream(), 1, arrivals, pairs,
+    DecodeThread decoder(square_stream(), {}, arrivals, pairs,
                          {.decode_failed = [this] { ++idrs_wanted; },
                           .peer_broke = [this](std::string why) { broken = std::move(why); }});
     decoder.finish();

@@ -25,7 +25,7 @@ class DisplayLoopTest : public render::test::GpuTest {
     arrivals.try_push(server.picture(0, luma, true));
     arrivals.close();
     HandOver<Pair> made;
-    DecodeThread decoder(square_stream(), 1, arrivals, made,
+    DecodeThread decoder(square_stream(), {}, arrivals, made,
                          {.decode_failed = [] {}, .peer_broke = [](auto) {}});
     decoder.finish();
     return made.take().value();

@@ -1,0 +1,123 @@
+#include "client/pair_maker.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+namespace atlaswire::client {
+namespace {
+
+constexpr std::size_t kMaxWaitingPictures = 8;
+constexpr std::size_t kMaxWaitingUpdates = 128;
+
+codec::MetaLimits limits_of(const proto::StreamDescription& stream) {
+  return {.max_vertices = stream.max_vertices,
+          .max_patches = stream.max_patches,
+          .grid_bits = stream.grid.bits,
+          .atlas = stream.atlas};
+}
+
+}  // namespace
+
+PairMaker::PairMaker(const proto::StreamDescription& stream, DecodeSettings settings, DecodeTroubles troubles)
+    : stream_(stream),
+      settings_(std::move(settings)),
+      troubles_(std::move(troubles)),
+      video_(stream.picture, settings_.threads, settings_.coding),
+      meta_(
+          codec::make_meta_decoder(static_cast<codec::MetaCodecKind>(stream.meta_codec), limits_of(stream))),
+      pairing_(kMaxWaitingPictures, kMaxWaitingUpdates),
+      replica_(limits_of(stream)),
+      mesher_(stream.grid) {}
+
+void PairMaker::on_frame(const proto::AssembledFrame& frame) {
+  if (broken_) return;
+  if (needs_idr_ && !frame.idr) {
+    ++counts_.skipped;
+    return;
+  }
+  const Time start = settings_.clock();
+  Result<codec::DecodedPicture> picture = video_.decode(frame.access_unit);
+  if (!picture) {
+    spdlog::debug("frame {} does not decode: {}", value(frame.frame), picture.error().message());
+    needs_idr_ = true;
+    ++counts_.failed;
+    return troubles_.decode_failed();
+  }
+  needs_idr_ = false;
+  if (picture->view().extent != stream_.picture) {
+    const Extent2D got = picture->view().extent;
+    return break_with(fmt::format("a picture of {}x{} came where {}x{} was agreed", got.width, got.height,
+                                  stream_.picture.width, stream_.picture.height));
+  }
+  ++counts_.decoded;
+  pairing_.add_picture(frame.frame,
+                       {.picture = std::make_shared<const codec::DecodedPicture>(std::move(*picture)),
+                        .arrival = frame.last_arrival,
+                        .decoding = settings_.clock() - start});
+}
+
+void PairMaker::on_update(UpdateArrival arrived) {
+  if (broken_) return;
+  const FrameId frame = arrived.update.meta.frame;
+  const Time start = settings_.clock();
+  Result<codec::MetaUpdate> update = meta_->decode(arrived.update.meta.meta);
+  if (!update) {
+    return break_with(fmt::format("meta update {}: {}", value(frame), update.error().message()));
+  }
+  if (update->frame != frame) {
+    return break_with(fmt::format("meta update of frame {} came in the message of frame {}",
+                                  value(update->frame), value(frame)));
+  }
+  const Duration decoding = settings_.clock() - start;
+  if (!pairing_.add_update(frame, {std::move(*update), std::move(arrived), decoding})) {
+    break_with(fmt::format("meta update {} came out of order", value(frame)));
+  }
+}
+
+std::optional<Pair> PairMaker::next_pair() {
+  while (!broken_) {
+    auto step = pairing_.next_step();
+    counts_.pairing = pairing_.counts();
+    if (!step) break;
+    const Time start = settings_.clock();
+    if (const Result<void> applied = replica_.apply(step->update.update); !applied) {
+      break_with(fmt::format("meta update {}: {}", value(step->frame), applied.error().message()));
+      break;
+    }
+    if (step->picture) return make_pair(*step->picture, step->update, start);
+  }
+  return std::nullopt;
+}
+
+Pair PairMaker::make_pair(const DecodedFrame& picture, const DecodedUpdate& update, Time start) {
+  Pair pair;
+  mesher_.build(replica_, pair.mesh);
+  pair.origin = mesher_.origin();
+  pair.picture = picture.picture;
+  const ServerTimes& server = update.arrived.server;
+  pair.server_pose = server.pose;
+  const Time ready = settings_.clock();
+  pair.times = {.frame = update.update.frame,
+                .pose = update.arrived.update.meta.pose,
+                .pose_sampled = server.pose ? std::optional(server.pose->sampled) : std::nullopt,
+                .pose_received = server.pose_received,
+                .render_start = server.render_start,
+                .encode_end = server.encode_end,
+                .video_arrival = picture.arrival,
+                .meta_arrival = update.arrived.update.arrival,
+                .video_decoding = picture.decoding,
+                .meta_decoding = update.decoding + (ready - start),
+                .ready = ready};
+  counts_.patches = replica_.patches().size();
+  counts_.triangles = replica_.triangle_count();
+  return pair;
+}
+
+void PairMaker::break_with(std::string why) {
+  broken_ = true;
+  troubles_.peer_broke(std::move(why));
+}
+
+}  // namespace atlaswire::client
