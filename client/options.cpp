@@ -1,4 +1,5 @@
 #include "base/host_port.h"
+#include "base/option_check.h"
 #include "base/program.h"
 #include "base/version.h"
 #include "client/settings.h"
@@ -27,17 +28,6 @@ constexpr const char* kFooter = R"(Examples:
 Exit codes: 0 done, 2 usage, 3 bad path or scene, 4 no Vulkan device, 6 cannot connect, 7 refused,
 8 server lost (what came is still written), 9 cannot write --out, 130 interrupted before the first frame.
 SIGINT and SIGTERM end the run early and orderly.)";
-
-[[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& allowed) {
-  throw ProgramError(ExitCode::kUsage, fmt::format("{} {}: must be {}", option, given, allowed));
-}
-
-template <class T>
-void demand_range(const char* option, T v, T low, T high, const char* unit = "") {
-  if (!(v >= low && v <= high)) {
-    refuse(option, fmt::format("{}", v), fmt::format("{}..{}{}", low, high, unit));
-  }
-}
 
 /// The texts and numbers that become other types after parsing.
 struct Raw {
@@ -104,7 +94,8 @@ void add_output_options(CLI::App& app, ClientSettings& s, Raw& raw) {
 
 HostPort parse_server(const std::string& text) {
   auto server = parse_host_port(text);
-  if (!server || server->port == 0) refuse("--connect", text, "HOST:PORT or [IPV6]:PORT, port 1..65535");
+  if (!server || server->port == 0)
+    refuse_option("--connect", text, "HOST:PORT or [IPV6]:PORT, port 1..65535");
   return *std::move(server);
 }
 
@@ -118,14 +109,14 @@ void apply_wishes(const Raw& raw, ClientSettings& s) {
     const auto atlas = parse_extent(raw.wanted_atlas);
     const auto fits = [](std::uint32_t side) { return side >= 64 && side <= 16'384; };
     if (!atlas || !fits(atlas->width) || !fits(atlas->height)) {
-      refuse("--atlas", raw.wanted_atlas, "WxH, sides 64..16384");
+      refuse_option("--atlas", raw.wanted_atlas, "WxH, sides 64..16384");
     }
     s.wanted_atlas = *atlas;
   }
   if (!raw.wanted_bit_rate.empty()) {
     const auto rate = parse_bit_rate(raw.wanted_bit_rate);
     if (!rate || rate->bits_per_second < 1000 || rate->bits_per_second > 10'000'000'000) {
-      refuse("--bitrate", raw.wanted_bit_rate, "a rate such as 800k or 10M, 1k..10G");
+      refuse_option("--bitrate", raw.wanted_bit_rate, "a rate such as 800k or 10M, 1k..10G");
     }
     s.wanted_bit_rate = *rate;
   }
@@ -138,7 +129,8 @@ void apply_wishes(const Raw& raw, ClientSettings& s) {
 void apply_view(const Raw& raw, ClientSettings& s) {
   const auto size = parse_extent(raw.size);
   const auto fits = [](std::uint32_t side) { return side >= 16 && side <= 16'384; };
-  if (!size || !fits(size->width) || !fits(size->height)) refuse("--size", raw.size, "WxH, sides 16..16384");
+  if (!size || !fits(size->width) || !fits(size->height))
+    refuse_option("--size", raw.size, "WxH, sides 16..16384");
   s.size = *size;
   demand_range("--fov", raw.fov_degrees, 10.0, 170.0, " degrees");
   s.vertical_fov = raw.fov_degrees * std::numbers::pi / 180;
@@ -147,8 +139,8 @@ void apply_view(const Raw& raw, ClientSettings& s) {
   s.duration = parse_seconds("--duration", raw.duration_s, 1e6);
   s.warm_up = parse_seconds("--warm-up", raw.warm_up_s, 3600);
   if (s.duration != Duration{} && s.warm_up >= s.duration) {
-    refuse("--warm-up", fmt::format("{}", raw.warm_up_s),
-           fmt::format("less than --duration, which is {} s", raw.duration_s));
+    refuse_option("--warm-up", fmt::format("{}", raw.warm_up_s),
+                  fmt::format("less than --duration, which is {} s", raw.duration_s));
   }
   demand_range("--decoder-threads", s.decoder_threads, 1U, 16U);
 }
@@ -157,10 +149,10 @@ void apply_output(const Raw& raw, ClientSettings& s) {
   s.out = raw.out;
   demand_range("--samples", s.samples, 1U, 1000U);
   if (s.png_every != 0 && s.out.empty())
-    refuse("--png-every", std::to_string(s.png_every), "0 without --out");
+    refuse_option("--png-every", std::to_string(s.png_every), "0 without --out");
   constexpr std::array kLevels{"trace", "debug", "info", "warn", "error", "off"};
   if (std::find(kLevels.begin(), kLevels.end(), raw.log_level) == kLevels.end()) {
-    refuse("--log-level", raw.log_level, fmt::format("one of {}", fmt::join(kLevels, ", ")));
+    refuse_option("--log-level", raw.log_level, fmt::format("one of {}", fmt::join(kLevels, ", ")));
   }
   s.log.level = s.quiet ? spdlog::level::warn : spdlog::level::from_str(raw.log_level);
 }

@@ -1,19 +1,13 @@
+#include "base/toml_reader.h"
+#include "netsim/profile.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <initializer_list>
 #include <iterator>
-#include <limits>
-
-// toml++ asserts, or with NDEBUG tells the optimizer to assume, what bad input breaks ("[" and a new line),
-// and then handles it all the same. Neither, please.
-#undef NDEBUG
-#define TOML_ASSERT(expr) static_assert(true)
-#define TOML_EXCEPTIONS 0
-#define TOML_ENABLE_FORMATTERS 0
-#include "netsim/profile.h"
-
-#include <toml++/toml.h>
+#include <type_traits>
 
 namespace atlaswire::netsim {
 
@@ -22,22 +16,14 @@ namespace {
 constexpr double kMaxMs = 3'600'000;
 constexpr double kMaxKilobytes = 4'194'304;
 constexpr double kMaxMbps = 1'000'000;
+constexpr std::int64_t kMaxPacket = 1'000'000'000'000'000;
+constexpr std::int64_t kMaxFlow = 0xFFFFFFFF;
 
-/// Reads one table's keys, remembering the first failure; a key nobody asked for is a failure too.
-class TableReader {
+/// The shared reader, and quantities of profiles.
+class TableReader : public TomlReader<ProfileError> {
  public:
-  TableReader(const toml::table& table, std::string where) : table_(table), where_(std::move(where)) {}
+  using TomlReader::TomlReader;
 
-  void number(const char* key, double& out, double low, double high) {
-    const toml::node* node = find(key);
-    if (!node) return;
-    const auto v = node->value<double>();
-    if (!v || !(*v >= low && *v <= high)) {
-      return fail(ProfileError::kOutOfRange,
-                  std::string(key) + " must be a number from " + text(low) + " to " + text(high));
-    }
-    out = *v;
-  }
   void duration(const char* key, Duration& out, double low_ms = 0) {
     double ms = to_ms(out);
     number(key, ms, low_ms, kMaxMs);
@@ -53,79 +39,38 @@ class TableReader {
     number(key, kb, 0, kMaxKilobytes);
     out.count = static_cast<std::uint64_t>(std::llround(kb * 1024));
   }
-  void flag(const char* key, bool& out) {
-    const toml::node* node = find(key);
-    if (!node) return;
-    const auto v = node->value_exact<bool>();
-    if (!v) return fail(ProfileError::kOutOfRange, std::string(key) + " must be true or false");
-    out = *v;
-  }
-  void word(const char* key, std::string& out) {
-    const toml::node* node = find(key);
-    if (!node) return;
-    const auto v = node->value_exact<std::string>();
-    if (!v) return fail(ProfileError::kOutOfRange, std::string(key) + " must be text");
-    out = *v;
-  }
-  template <class Enum>
-  void choice(const char* key, Enum& out, std::initializer_list<std::pair<const char*, Enum>> choices) {
-    std::string name;
-    word(key, name);
-    if (name.empty()) return;
-    std::string known;
-    for (const auto& [text, v] : choices) {
-      if (name == text) {
-        out = v;
-        return;
+  /// Numbers from `low` to `high`, of which `convert` makes the elements; they are sorted.
+  template <class Number, class T, class Convert>
+  void list(const char* key, std::vector<T>& out, Number low, Number high, Convert convert) {
+    const toml::array* given = array(key);
+    if (!given) return;
+    out.clear();
+    for (const toml::node& node : *given) {
+      const auto v = node.value<Number>();
+      if (!v || !(*v >= low && *v <= high)) {
+        constexpr const char* kWhole = std::is_integral_v<Number> ? "whole " : "";
+        return fail(ProfileError::kOutOfRange,
+                    fmt::format("{} must hold {}numbers from {} to {}", key, kWhole, low, high));
       }
-      known += known.empty() ? text : std::string(", ") + text;
+      out.push_back(convert(*v));
     }
-    fail(ProfileError::kOutOfRange, std::string(key) + " must be one of " + known);
+    std::sort(out.begin(), out.end());
   }
-  const toml::array* array(const char* key) {
-    const toml::node* node = find(key);
-    if (!node) return nullptr;
-    if (!node->is_array()) fail(ProfileError::kOutOfRange, std::string(key) + " must be an array");
-    return node->as_array();
-  }
-  const toml::table* table(const char* key) {
-    const toml::node* node = find(key);
-    if (!node) return nullptr;
-    if (!node->is_table()) fail(ProfileError::kOutOfRange, std::string(key) + " must be a table");
-    return node->as_table();
-  }
-  [[nodiscard]] std::string at(const char* key) const { return where_ + key + "."; }
-
-  void fail(ProfileError code, const std::string& what) {
-    if (!error_) error_ = Error{code, where_ + what};
-  }
-  /// The first failure, or a key that was never asked for.
-  std::optional<Error> finish() {
-    for (const auto& [key, node] : table_) {
-      const std::string name(key.str());
-      if (!error_ && std::find(known_.begin(), known_.end(), name) == known_.end()) {
-        error_ = Error{ProfileError::kUnknownKey, where_ + name};
+  /// Calls `read`, which gives an optional error, with each table of an array of tables.
+  template <class Read>
+  std::optional<Error> tables(const char* key, Read read) {
+    const toml::array* given = array(key);
+    if (!given) return std::nullopt;
+    for (const toml::node& node : *given) {
+      const toml::table* one = node.as_table();
+      if (!one) {
+        fail(ProfileError::kOutOfRange, std::string(key) + " must be an array of tables");
+        return std::nullopt;
       }
+      if (auto e = read(*one, at(key))) return e;
     }
-    return error_;
+    return std::nullopt;
   }
-
- private:
-  const toml::node* find(const char* key) {
-    known_.emplace_back(key);
-    return table_.get(key);
-  }
-  static std::string text(double v) {
-    std::string s = std::to_string(v);
-    s.erase(s.find_last_not_of('0') + 1);
-    if (s.back() == '.') s.pop_back();
-    return s;
-  }
-
-  const toml::table& table_;
-  std::string where_;
-  std::vector<std::string> known_;
-  std::optional<Error> error_;
 };
 
 std::optional<Error> read_delay(const toml::table& t, const std::string& where, DelayModel& m) {
@@ -143,18 +88,7 @@ std::optional<Error> read_delay(const toml::table& t, const std::string& where, 
   r.number("correlation", m.correlation, 0, 0.9999);
   r.duration("hold_ms", m.hold);
   r.duration("most_ms", m.most);
-  if (const toml::array* samples = r.array("samples_ms")) {
-    m.samples.clear();
-    for (const toml::node& node : *samples) {
-      const double ms = node.value<double>().value_or(-1);
-      if (!(ms >= 0 && ms <= kMaxMs)) {
-        r.fail(ProfileError::kOutOfRange, "samples_ms must hold numbers from 0 to 3600000");
-        break;
-      }
-      m.samples.push_back(from_seconds(ms * 1e-3));
-    }
-    std::sort(m.samples.begin(), m.samples.end());
-  }
+  r.list("samples_ms", m.samples, 0.0, kMaxMs, [](double ms) { return from_seconds(ms * 1e-3); });
   if (m.shape == Shape::kEmpirical && m.samples.empty())
     r.fail(ProfileError::kOutOfRange, "samples_ms must not be empty");
   if (m.shape == Shape::kUniform && m.spread > m.base)
@@ -185,15 +119,8 @@ std::optional<Error> read_loss(const toml::table& t, const std::string& where, L
   for (const auto& [key, out] : probabilities) r.number(key, *out, 0, 1);
   r.count("period", m.period, 1, 1'000'000'000);
   r.count("burst", m.burst, 0, 1'000'000'000);
-  if (const toml::array* list = r.array("packets")) {
-    m.list.clear();
-    for (const toml::node& node : *list) {
-      const std::int64_t packet = node.value_exact<std::int64_t>().value_or(-1);
-      if (packet < 0) r.fail(ProfileError::kOutOfRange, "packets must hold whole numbers from 0");
-      m.list.push_back(static_cast<std::uint64_t>(packet));
-    }
-    std::sort(m.list.begin(), m.list.end());
-  }
+  r.list("packets", m.list, std::int64_t{0}, kMaxPacket,
+         [](std::int64_t packet) { return static_cast<std::uint64_t>(packet); });
   if (m.p13 + m.p14 > 1 || m.p31 + m.p32 > 1)
     r.fail(ProfileError::kOutOfRange, "probabilities of leaving one state exceed 1");
   if (m.kind == Kind::kPeriodic && m.burst > m.period)
@@ -283,13 +210,42 @@ std::optional<Error> read_link(const toml::table& t, const std::string& where, c
   out.steps.assign(1, {});
   r.flag("down", out.steps[0].down);
   if (auto e = read_parameters(r, directory, out.steps[0].parameters)) return e;
-  if (const toml::array* steps = r.array("step")) {
-    for (const toml::node& node : *steps) {
-      const toml::table* table = node.as_table();
-      if (!table) return Error{ProfileError::kSyntax, where + "step must be an array of tables"};
-      if (auto e = read_step(*table, where + "step.", directory, out)) return e;
-    }
+  const auto step = [&](const toml::table& table, const std::string& at) {
+    return read_step(table, at, directory, out);
+  };
+  if (auto e = r.tables("step", step)) return e;
+  return r.finish();
+}
+
+/// `up` and `down` replace `both` whole; what is not there leaves `up_link` and `down_link` as they are.
+std::optional<Error> read_directions(TableReader& r, const std::string& directory, LinkProfile& up_link,
+                                     LinkProfile& down_link) {
+  if (const toml::table* both = r.table("both")) {
+    if (auto e = read_link(*both, r.at("both"), directory, up_link)) return e;
+    down_link = up_link;
   }
+  if (const toml::table* up = r.table("up")) {
+    if (auto e = read_link(*up, r.at("up"), directory, up_link)) return e;
+  }
+  if (const toml::table* down = r.table("down")) {
+    if (auto e = read_link(*down, r.at("down"), directory, down_link)) return e;
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> read_flow_rule(const toml::table& t, const std::string& where,
+                                    const std::string& directory, Profile& out) {
+  TableReader r(t, where);
+  FlowRule rule{.kind = std::nullopt, .numbers = {}, .up = out.up, .down = out.down};
+  r.choice("kind", rule.kind, {{"datagram", FlowKind::kDatagram}, {"stream", FlowKind::kStream}});
+  r.list("numbers", rule.numbers, std::int64_t{1}, kMaxFlow,
+         [](std::int64_t number) { return static_cast<std::uint32_t>(number); });
+  if (rule.numbers.empty() && (!rule.kind || t.contains("numbers")))
+    r.fail(ProfileError::kOutOfRange, "kind or numbers must say which flows");
+  if (auto e = read_directions(r, directory, rule.up, rule.down)) return e;
+  if (out.flows.size() == Profile::kMostRules)
+    r.fail(ProfileError::kOutOfRange, fmt::format("kind: more than {} rules", Profile::kMostRules));
+  out.flows.push_back(std::move(rule));
   return r.finish();
 }
 
@@ -297,38 +253,20 @@ std::optional<Error> read_link(const toml::table& t, const std::string& where, c
 
 Result<Profile> parse_profile(std::string_view toml, const std::string& origin,
                               const std::string& directory) {
-  // toml++ 3.3 has undefined behaviour on letters beyond ASCII outside of strings, so none may get that far.
-  const auto foreign =
-      std::find_if(toml.begin(), toml.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
-  if (foreign != toml.end()) {
-    const auto line = 1 + std::count(toml.begin(), foreign, '\n');
-    return Error{ProfileError::kSyntax, origin + " line " + std::to_string(line) + ": only ASCII is allowed"};
-  }
-  const toml::parse_result parsed = toml::parse(toml, origin);
-  if (!parsed) {
-    const auto& e = parsed.error();
-    return Error{ProfileError::kSyntax, origin + " line " + std::to_string(e.source().begin.line) + ": " +
-                                            std::string(e.description())};
-  }
+  const auto parsed = parse_toml<ProfileError>(toml, origin);
+  if (parsed.has_error()) return parsed.error();
   Profile profile;
-  TableReader r(parsed.table(), origin + ": ");
+  TableReader r(*parsed, origin + ": ");
   r.word("name", profile.name);
   r.word("description", profile.description);
   r.word("source", profile.source);
   profile.up.steps.assign(1, {});
   profile.down.steps.assign(1, {});
-  if (const toml::table* both = r.table("both")) {
-    if (auto e = read_link(*both, r.at("both"), directory, profile.up)) return *e;
-    profile.down = profile.up;
-  }
-  const toml::table* up = r.table("up");
-  const toml::table* down = r.table("down");
-  if (up) {
-    if (auto e = read_link(*up, r.at("up"), directory, profile.up)) return *e;
-  }
-  if (down) {
-    if (auto e = read_link(*down, r.at("down"), directory, profile.down)) return *e;
-  }
+  if (auto e = read_directions(r, directory, profile.up, profile.down)) return *e;
+  const auto rule = [&](const toml::table& table, const std::string& at) {
+    return read_flow_rule(table, at, directory, profile);
+  };
+  if (auto e = r.tables("flow", rule)) return *e;
   if (auto e = r.finish()) return *e;
   return profile;
 }

@@ -1,6 +1,7 @@
 #include "netsim/relay_options.h"
 
 #include "base/host_port.h"
+#include "base/option_check.h"
 #include "base/program.h"
 #include "base/version.h"
 
@@ -24,15 +25,6 @@ constexpr const char* kFooter = R"(Examples:
 
 Exit codes: 0 done, 1 a replay differs, 2 usage or bad profile, 5 port in use, 6 --to cannot be found,
 9 cannot write a file. SIGINT and SIGTERM end a relay cleanly: logs are complete, the summary is printed.)";
-
-[[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& allowed) {
-  throw ProgramError(ExitCode::kUsage, fmt::format("{} {}: must be {}", option, given, allowed));
-}
-
-template <class T>
-void demand_range(const char* option, T v, T low, T high) {
-  if (!(v >= low && v <= high)) refuse(option, fmt::format("{}", v), fmt::format("{}..{}", low, high));
-}
 
 /// The texts and numbers that become other types after parsing.
 struct Raw {
@@ -110,9 +102,9 @@ std::string list_text() {
 
 void apply_relay(const Raw& raw, NetsimOptions& o) {
   const auto listen = host_port(raw.listen, "127.0.0.1");
-  if (!listen) refuse("--listen", raw.listen, "PORT or ADDRESS:PORT, port 0..65535");
+  if (!listen) refuse_option("--listen", raw.listen, "PORT or ADDRESS:PORT, port 0..65535");
   const auto to = host_port(raw.to, "");
-  if (!to || to->port == 0) refuse("--to", raw.to, "HOST:PORT or [IPV6]:PORT, port 1..65535");
+  if (!to || to->port == 0) refuse_option("--to", raw.to, "HOST:PORT or [IPV6]:PORT, port 1..65535");
   o.relay.listen_address = listen->host;
   o.relay.port = listen->port;
   o.relay.target_host = to->host;
@@ -130,7 +122,7 @@ void apply_relay(const Raw& raw, NetsimOptions& o) {
 void apply_draw(const Raw& raw, NetsimOptions& o) {
   const auto rate = parse_bit_rate(raw.load);
   if (!rate || rate->bits_per_second < 1000 || rate->bits_per_second > 100'000'000'000) {
-    refuse("--load", raw.load, "a rate such as 800k or 20M, 1k..100G");
+    refuse_option("--load", raw.load, "a rate such as 800k or 20M, 1k..100G");
   }
   o.load.rate = *rate;
   demand_range("--packet", o.load.packet_octets, 1U, 65'507U);
@@ -146,7 +138,7 @@ void apply(const Raw& raw, NetsimOptions& o) {
   }
   if (!raw.show.empty()) {
     o.text = shipped_profile_text(raw.show);
-    if (o.text.empty()) refuse("--show", raw.show, "a name that --list gives");
+    if (o.text.empty()) refuse_option("--show", raw.show, "a name that --list gives");
     return;
   }
   o.mode = !o.replay_file.empty() ? Mode::kReplay : !o.draw_file.empty() ? Mode::kDraw : Mode::kRelay;

@@ -1,4 +1,5 @@
 #include "base/host_port.h"
+#include "base/option_check.h"
 #include "base/program.h"
 #include "base/version.h"
 #include "server/settings.h"
@@ -29,16 +30,6 @@ constexpr const char* kFooter = R"(Examples:
 
 Exit codes: 0 done, 2 usage, 3 scene, 4 no Vulkan device, 5 port in use, 9 cannot write a file.
 SIGTERM or SIGINT drains: clients get a goodbye within 2 s; a second signal ends at once.)";
-
-[[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& allowed) {
-  throw ProgramError(ExitCode::kUsage, fmt::format("{} {}: must be {}", option, given, allowed));
-}
-
-template <class T>
-void demand_range(const char* option, T v, T low, T high, const char* unit = "") {
-  if (!(v >= low && v <= high))
-    refuse(option, fmt::format("{}", v), fmt::format("{}..{}{}", low, high, unit));
-}
 
 /// The texts and numbers that become other types after parsing.
 struct Raw {
@@ -160,7 +151,7 @@ void apply_cover(const std::string& text, CoverSettings& cover) {
   const char* end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, ms);
   const bool whole = parsed.ec == std::errc{} && parsed.ptr == end;
-  if (!whole || !(ms >= 0 && ms <= 10'000)) refuse("--cover", text, "auto or 0..10000 (ms)");
+  if (!whole || !(ms >= 0 && ms <= 10'000)) refuse_option("--cover", text, "auto or 0..10000 (ms)");
   cover.fixed = from_seconds(ms / 1000);
 }
 
@@ -169,7 +160,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   const auto atlas = parse_extent(raw.atlas);
   const auto fits = [](std::uint32_t side) { return side >= 64 && side <= 8192 && side % 64 == 0; };
   if (!atlas || !fits(atlas->width) || !fits(atlas->height)) {
-    refuse("--atlas", raw.atlas, "WxH, each side a multiple of 64 in 64..8192");
+    refuse_option("--atlas", raw.atlas, "WxH, each side a multiple of 64 in 64..8192");
   }
   render.atlas = *atlas;
   render.allocator.atlas = *atlas;
@@ -190,7 +181,7 @@ void apply_video(const Raw& raw, StreamSettings& s) {
   const auto rate = parse_bit_rate(raw.bit_rate);
   if (!rate || (rate->bits_per_second != 0 && rate->bits_per_second < 10'000) ||
       rate->bits_per_second > 2'000'000'000) {
-    refuse("--bitrate", raw.bit_rate, "0 or a rate such as 800k or 10M, 10k..2G");
+    refuse_option("--bitrate", raw.bit_rate, "0 or a rate such as 800k or 10M, 10k..2G");
   }
   video.bit_rate = *rate;
   demand_range("--qp", video.qp, 0, 51);
@@ -200,12 +191,12 @@ void apply_video(const Raw& raw, StreamSettings& s) {
   demand_range("--encoder-threads", video.threads, 1U, 16U);
   constexpr std::array kEncoders{"auto", "h264_nvenc", "h264_vaapi", "libx264"};
   if (std::find(kEncoders.begin(), kEncoders.end(), video.encoder) == kEncoders.end()) {
-    refuse("--encoder", video.encoder, fmt::format("one of {}", fmt::join(kEncoders, ", ")));
+    refuse_option("--encoder", video.encoder, fmt::format("one of {}", fmt::join(kEncoders, ", ")));
   }
   constexpr std::array kPresets{"ultrafast", "superfast", "veryfast", "faster",  "fast",
                                 "medium",    "slow",      "slower",   "veryslow"};
   if (std::find(kPresets.begin(), kPresets.end(), video.preset) == kPresets.end()) {
-    refuse("--preset", video.preset, fmt::format("one of {}", fmt::join(kPresets, ", ")));
+    refuse_option("--preset", video.preset, fmt::format("one of {}", fmt::join(kPresets, ", ")));
   }
 }
 
@@ -221,7 +212,7 @@ void apply_network(const Raw& raw, DaemonSettings& s) {
   demand_range("--pacing", s.delivery.pacing, 1.0, 100.0);
   if (!raw.mirror.empty()) {
     s.mirror = parse_host_port(raw.mirror);
-    if (!s.mirror || s.mirror->port == 0) refuse("--mirror", raw.mirror, kHostPortRule);
+    if (!s.mirror || s.mirror->port == 0) refuse_option("--mirror", raw.mirror, kHostPortRule);
   }
   if (s.print_sdp && !s.mirror) s.mirror = HostPort{"127.0.0.1", 5004};
 }
@@ -231,7 +222,7 @@ void apply_reports(const Raw& raw, DaemonSettings& s) {
   s.max_runtime = parse_seconds("--max-runtime", raw.max_runtime_s, 0, 1e9);
   constexpr std::array kLevels{"trace", "debug", "info", "warn", "error", "off"};
   if (std::find(kLevels.begin(), kLevels.end(), raw.log_level) == kLevels.end()) {
-    refuse("--log-level", raw.log_level, fmt::format("one of {}", fmt::join(kLevels, ", ")));
+    refuse_option("--log-level", raw.log_level, fmt::format("one of {}", fmt::join(kLevels, ", ")));
   }
   s.log.level = spdlog::level::from_str(raw.log_level);
 }
