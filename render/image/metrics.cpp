@@ -1,6 +1,7 @@
 #include "render/image/metrics.h"
 
 #include "base/assert.h"
+#include "render/image/weighted_sum.h"
 
 #include <array>
 #include <cmath>
@@ -32,23 +33,16 @@ std::array<float, kWindow> gaussian() {
   return out;
 }
 
+/// BT.709 luma of the sRGB-encoded colours, in [0, 1].
+float luma(const std::uint8_t* rgba) {
+  return 0.2126F / 255 * static_cast<float>(rgba[0]) + 0.7152F / 255 * static_cast<float>(rgba[1]) +
+         0.0722F / 255 * static_cast<float>(rgba[2]);
+}
+
 /// Luma of one row, less a half: small numbers lose fewer digits when squares are subtracted.
 void centred_luma(const Picture& image, std::uint32_t y, float* out) {
   const std::uint8_t* p = &image.rgba[std::size_t{y} * image.extent.width * 4];
-  for (std::uint32_t x = 0; x < image.extent.width; ++x, p += 4) {
-    out[x] = 0.2126F / 255 * static_cast<float>(p[0]) + 0.7152F / 255 * static_cast<float>(p[1]) +
-             0.0722F / 255 * static_cast<float>(p[2]) - 0.5F;
-  }
-}
-
-/// out[x] = sum over i of w[i] * in[x + i], for `count` outputs.
-void filter_row(const std::array<float, kWindow>& w, const float* in, std::uint32_t count, float* out) {
-  for (std::uint32_t x = 0; x < count; ++x) out[x] = w[0] * in[x];
-  for (std::uint32_t i = 1; i < kWindow; ++i) {
-    const float weight = w[i];
-    const float* from = in + i;
-    for (std::uint32_t x = 0; x < count; ++x) out[x] += weight * from[x];
-  }
+  for (std::uint32_t x = 0; x < image.extent.width; ++x, p += 4) out[x] = luma(p) - 0.5F;
 }
 
 /// Keeps the horizontally filtered moments of the last eleven rows and joins them vertically.
@@ -75,22 +69,15 @@ class SlidingWindow {
       product[x] = x1[x] * x2[x];
     }
     for (std::size_t m = 0; m < kMoments; ++m) {
-      filter_row(weights_, raw_.data() + m * width_, count_, slot(y) + m * count_);
+      weighted_sum_along(weights_, raw_.data() + m * width_, count_, slot(y) + m * count_);
     }
   }
 
   /// SSIM of the windows whose last row is `y`.
   void emit(std::uint32_t y, float* out) {
-    const std::size_t length = kMoments * count_;
-    for (std::uint32_t i = 0; i < kWindow; ++i) {
-      const float weight = weights_[i];
-      const float* row = slot(y - kBorder + i);
-      if (i == 0) {
-        for (std::size_t k = 0; k < length; ++k) sums_[k] = weight * row[k];
-      } else {
-        for (std::size_t k = 0; k < length; ++k) sums_[k] += weight * row[k];
-      }
-    }
+    std::array<const float*, kWindow> rows{};
+    for (std::uint32_t i = 0; i < kWindow; ++i) rows[i] = slot(y - kBorder + i);
+    weighted_sum(weights_, rows.data(), kMoments * count_, sums_.data());
     const float* mean1 = sums_.data();
     const float* mean2 = mean1 + count_;
     const float* squares = mean2 + count_;
@@ -155,6 +142,20 @@ double psnr(const Picture& reference, const Picture& picture) {
   if (squares == 0) return std::numeric_limits<double>::infinity();
   const double mean = static_cast<double>(squares) / (3.0 * static_cast<double>(reference.extent.area()));
   return 10 * std::log10(255.0 * 255.0 / mean);
+}
+
+double flicker(const ShownPair& before, const ShownPair& now) {
+  const Extent2D extent = before.reference->extent;
+  AW_ASSERT(before.picture->extent == extent && now.reference->extent == extent &&
+            now.picture->extent == extent);
+  if (extent.area() == 0) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0;
+  for (std::size_t i = 0; i < before.reference->rgba.size(); i += 4) {
+    const float expected = luma(&now.reference->rgba[i]) - luma(&before.reference->rgba[i]);
+    const float shown = luma(&now.picture->rgba[i]) - luma(&before.picture->rgba[i]);
+    sum += std::abs(shown - expected);
+  }
+  return sum / static_cast<double>(extent.area());
 }
 
 double hole_share(const Picture& picture) {

@@ -21,9 +21,23 @@ SsimMap ssim_map(const Picture& reference, const Picture& picture);
 /// Mean of `ssim_map`: MSSIM of one frame. NaN if a side is below 11 pixels.
 double mssim(const Picture& reference, const Picture& picture);
 
+/// Structural dissimilarity of an MSSIM value: 0 for equal pictures, larger is worse, 1 at most.
+constexpr double dssim(double mssim_value) { return (1 - mssim_value) / 2; }
+
 /// Peak signal-to-noise ratio in dB over red, green and blue together; infinity for equal pictures, NaN
 /// for empty ones.
 double psnr(const Picture& reference, const Picture& picture);
+
+/// What is shown at one moment, and what should have been. Neither is null; all of one extent.
+struct ShownPair {
+  const Picture* reference = nullptr;
+  const Picture* picture = nullptr;
+};
+
+/// Flicker between two successive displayed frames: mean over the pixels of |(v1 - v0) - (r1 - r0)|, with v
+/// the shown and r the reference's BT.709 luma of sRGB-encoded colours in [0, 1]. 0: the picture changes as
+/// the reference does, however wrong both its frames are; 2 at most. NaN for empty pictures.
+double flicker(const ShownPair& before, const ShownPair& now);
 
 /// Share of pixels, 0..1, whose alpha is 0: nothing was drawn there. 0 for an empty picture.
 double hole_share(const Picture& picture);

@@ -11,6 +11,8 @@
 namespace atlaswire::render {
 namespace {
 
+const Picture kEmpty;
+
 Picture noise(std::uint64_t seed, Extent2D extent) {
   Random random(seed);
   Picture picture(extent);
@@ -143,6 +145,28 @@ TEST(Psnr, MatchesItsClosedForm) {
   EXPECT_EQ(psnr(a, a), std::numeric_limits<double>::infinity());
   EXPECT_NEAR(psnr(Picture({4, 4}, {0, 0, 0, 255}), Picture({4, 4}, {255, 255, 255, 255})), 0, 1e-12);
   EXPECT_TRUE(std::isnan(psnr(Picture(), Picture())));
+}
+
+TEST(Dssim, IsHalfOfWhatSsimLacks) {
+  EXPECT_DOUBLE_EQ(dssim(1), 0);
+  EXPECT_DOUBLE_EQ(dssim(0.9), 0.05);
+  EXPECT_DOUBLE_EQ(dssim(-1), 1);
+}
+
+TEST(Flicker, ComparesChangesOfLumaAndNotPictures) {
+  const Picture dark({8, 4}, {51, 51, 51, 255});
+  const Picture light({8, 4}, {102, 102, 102, 0});
+  const Picture black({8, 4}, {0, 0, 0, 255});
+  EXPECT_EQ(flicker({&dark, &light}, {&dark, &light}), 0);            // wrong, but steady
+  EXPECT_NEAR(flicker({&black, &dark}, {&dark, &light}), 0, 1e-7);    // wrong, but brightening alike
+  EXPECT_NEAR(flicker({&dark, &dark}, {&dark, &light}), 0.2, 1e-6);   // flashes
+  EXPECT_NEAR(flicker({&dark, &light}, {&light, &dark}), 0.4, 1e-6);  // the wrong way
+  const Picture white({8, 4}, {255, 255, 255, 255});
+  EXPECT_NEAR(flicker({&black, &white}, {&white, &black}), 2, 1e-6);
+  Picture half = dark;
+  for (std::uint32_t x = 0; x < 8; ++x) half.set(x, 0, {51, 255, 51, 255});
+  EXPECT_NEAR(flicker({&dark, &dark}, {&dark, &half}), 0.25 * 0.8 * 0.7152, 1e-6);
+  EXPECT_TRUE(std::isnan(flicker({&kEmpty, &kEmpty}, {&kEmpty, &kEmpty})));
 }
 
 TEST(HoleShare, CountsPixelsWithoutAlpha) {
