@@ -3,184 +3,171 @@
 #include "base/assert.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace atlaswire::render {
 
 SuperblockStore::SuperblockStore(Extent2D atlas, std::uint32_t superblock_log2, std::uint32_t min_log2)
     : grid_{atlas.width >> superblock_log2, atlas.height >> superblock_log2},
-      superblock_log2_(superblock_log2),
-      min_log2_(min_log2),
-      side_(superblock_log2 + 1),
-      stacks_(std::size_t{side_} * side_),
-      stack_size_(stacks_.size()),
-      stacked_in_(grid_.area() * stacks_.size()),
-      tails_(side_),
-      live_(grid_.area()),
-      generation_(grid_.area()) {
+      numbers_(min_log2, superblock_log2),
+      stacks_(numbers_.count()),
+      stack_size_(numbers_.count()),
+      leftover_(numbers_.count()),
+      leftover_taken_(numbers_.count()),
+      tails_(superblock_log2 + 1),
+      free_(grid_.area()),
+      in_use_(grid_.area()),
+      open_(grid_.area()) {
   AW_ASSERT(superblock_log2 <= 12 && min_log2 <= superblock_log2);
   AW_ASSERT(grid_.width << superblock_log2 == atlas.width && grid_.height << superblock_log2 == atlas.height);
-  free_.reserve(live_.size());
   clear();
 }
 
 void SuperblockStore::clear() {
   for (auto& stack : stacks_) stack.clear();
   std::ranges::fill(stack_size_, 0U);
-  std::ranges::fill(stacked_in_, 0U);
   std::ranges::fill(tails_, Tail{});
-  std::ranges::fill(live_, 0U);
-  free_.clear();
-  for (std::uint32_t i = superblocks(); i-- > 0;) free_.push_back(i);
+  std::ranges::fill(in_use_, 0U);
+  std::fill(open_.begin(), open_.end(), false);
+  deferred_.clear();
+  free_count_ = superblocks();
+  for (std::uint32_t i = 0; i < free_count_; ++i) free_[i] = free_count_ - 1 - i;
   allocated_ = 0;
 }
 
-std::optional<TexelPosition> SuperblockStore::pop(Level level) {
-  const std::uint32_t slot = index(level);
-  if (stack_size_[slot] == 0) return std::nullopt;
-  auto& stack = stacks_[slot];
-  for (;;) {
-    const Entry entry = stack.back();
-    stack.pop_back();
-    const std::uint32_t superblock = superblock_of(entry.at);
-    if (entry.generation != generation_[superblock]) continue;
-    --stack_size_[slot];
-    --stacked_in_[superblock * stacks_.size() + slot];
-    count_live(level, entry.at);
-    return entry.at;
-  }
-}
-
-std::optional<TexelPosition> SuperblockStore::bump(Level level) {
-  Tail& tail = tails_[level.width_log2];
-  if (tail.superblock == Tail::kNone) {
-    if (free_.empty()) return std::nullopt;
-    tail = {free_.back(), 0};
-    free_.pop_back();
-  }
-  const TexelPosition at = tail_position(level.width_log2);
-  tail.row += 1U << level.height_log2;
-  count_live(level, at);
-  if (tail.row == rows(level.width_log2)) tail = {};
-  return at;
-}
-
-void SuperblockStore::align_tail(std::uint32_t width_log2) {
-  Tail& tail = tails_[width_log2];
-  if (tail.superblock == Tail::kNone) return;
-  while ((tail.row & ((1U << width_log2) - 1)) != 0) {
-    const auto height_log2 = static_cast<std::uint8_t>(std::countr_zero(tail.row));
-    push({static_cast<std::uint8_t>(width_log2), height_log2}, tail_position(width_log2));
-    tail.row += 1U << height_log2;
-  }
-  if (tail.row == rows(width_log2)) tail = {};
-}
-
-std::optional<TexelPosition> SuperblockStore::take_best_fit(Level level) {
-  const auto largest = static_cast<std::uint8_t>(superblock_log2_);
-  std::optional<Level> best;
-  const auto offer = [&](Level candidate) {
-    if (!best || candidate.area_log2() < best->area_log2()) best = candidate;
+void SuperblockStore::release(std::span<const Block> blocks) {
+  const auto count_out = [&](const Block& block) {
+    const std::uint32_t superblock = superblock_of({block.x, block.y});
+    AW_ASSERT(in_use_[superblock] > 0);
+    --in_use_[superblock];
   };
-  for (std::uint8_t w = level.width_log2; w <= largest; ++w) {
-    for (std::uint8_t h = level.height_log2; h <= w; ++h) {
-      const bool in_tail = h == w && tails_[w].superblock != Tail::kNone;
-      if (stack_size_[index({w, h})] != 0 || in_tail) offer({w, h});
-    }
+  for (const Block& block : deferred_) count_out(block);
+  for (const Block& block : blocks) {
+    count_out(block);
+    allocated_ -= block.area();
   }
-  if (!best && !free_.empty()) best = Level{largest, largest};
-  if (!best) return std::nullopt;
-
-  Level whole = *best;
-  auto at = pop(whole);
-  if (!at) at = bump(whole);
-  AW_ASSERT(at.has_value());
-  allocated_ -= whole.area() - level.area();
-  while (whole.height_log2 > level.height_log2) {
-    --whole.height_log2;
-    push(whole, {at->x, static_cast<std::uint16_t>(at->y + (1U << whole.height_log2))});
-  }
-  while (whole.width_log2 > level.width_log2) {
-    --whole.width_log2;
-    push(whole, {static_cast<std::uint16_t>(at->x + (1U << whole.width_log2)), at->y});
-  }
-  return at;
+  const std::vector<bool> reclaimed = reclaim();
+  const auto push = [&](const Block& block) {
+    const TexelPosition at{block.x, block.y};
+    if (!reclaimed.empty() && reclaimed[superblock_of(at)]) return;
+    const std::uint32_t number = numbers_.number({block.width_log2, block.height_log2});
+    stacks_[number].push_back(at);
+    ++stack_size_[number];
+  };
+  std::ranges::for_each(deferred_, push);
+  std::ranges::for_each(blocks, push);
+  deferred_.clear();
 }
 
-void SuperblockStore::release(const Block& block) {
-  const Level level{block.width_log2, block.height_log2};
-  const TexelPosition at{block.x, block.y};
-  const std::uint32_t superblock = superblock_of(at);
-  AW_ASSERT(live_[superblock] > 0);
-  allocated_ -= level.area();
-  if (--live_[superblock] == 0) {
-    reclaim(superblock);
-  } else {
-    push(level, at);
-  }
+void SuperblockStore::defer(const Block& block) {
+  deferred_.push_back(block);
+  allocated_ -= block.area();
 }
 
-void SuperblockStore::reclaim(std::uint32_t superblock) {
-  ++generation_[superblock];
-  auto* in = &stacked_in_[superblock * stacks_.size()];
-  for (std::size_t slot = 0; slot < stacks_.size(); ++slot) {
-    stack_size_[slot] -= in[slot];
-    in[slot] = 0;
+/// Frees superblocks without a block in use, and says which; empty if none.
+std::vector<bool> SuperblockStore::reclaim() {
+  std::vector<bool> reclaimed;
+  for (std::uint32_t i = superblocks(); i-- > 0;) {
+    if (!open_[i] || in_use_[i] != 0) continue;
+    if (reclaimed.empty()) reclaimed.resize(superblocks());
+    reclaimed[i] = true;
+    open_[i] = false;
+    free_[free_count_++] = i;
   }
+  if (reclaimed.empty()) return reclaimed;
   for (Tail& tail : tails_) {
-    if (tail.superblock == superblock) tail = {};
+    if (tail.superblock != Tail::kNone && reclaimed[tail.superblock]) tail = {};
   }
-  free_.push_back(superblock);
-}
-
-void SuperblockStore::push(Level level, TexelPosition at) {
-  const std::uint32_t slot = index(level);
-  auto& stack = stacks_[slot];
-  if (stack.size() > 2 * std::size_t{stack_size_[slot]} + 64) {
-    std::erase_if(stack, [&](const Entry& e) { return e.generation != generation_[superblock_of(e.at)]; });
+  for (std::size_t i = 0; i < stacks_.size(); ++i) {
+    std::erase_if(stacks_[i], [&](TexelPosition at) { return reclaimed[superblock_of(at)]; });
+    stack_size_[i] = static_cast<std::uint32_t>(stacks_[i].size());
   }
-  const std::uint32_t superblock = superblock_of(at);
-  stack.push_back({at, generation_[superblock]});
-  ++stack_size_[slot];
-  ++stacked_in_[superblock * stacks_.size() + slot];
+  return reclaimed;
 }
 
-void SuperblockStore::count_live(Level level, TexelPosition at) {
-  ++live_[superblock_of(at)];
-  allocated_ += level.area();
+std::optional<SuperblockStore::Placed> SuperblockStore::place(const Provision& provision, Level level,
+                                                              std::uint32_t slot) {
+  std::uint32_t number = numbers_.number(level);
+  while (slot >= provision.served[number]) {
+    if (!provision.may_shrink || number == 0) return std::nullopt;
+    slot = provision.onward[number] + slot - provision.served[number];
+    level = halved(level);
+    number = numbers_.number(level);
+  }
+  const Provision::Segment* segment = &provision.segments[provision.segment[number]];
+  std::uint32_t begin = 0;
+  for (; segment->end <= slot; ++segment) begin = segment->end;
+
+  const Level parent = numbers_.level(segment->parent);
+  const std::uint32_t across_log2 = parent.width_log2 - level.width_log2;
+  const std::uint32_t blocks_log2 = parent.area_log2() - level.area_log2();
+  const std::uint32_t i = slot - begin;
+  TexelPosition at = parent_at(*segment, i >> blocks_log2);
+  const std::uint32_t piece = i & ((1U << blocks_log2) - 1);
+  at.x = static_cast<std::uint16_t>(at.x + ((piece & ((1U << across_log2) - 1)) << level.width_log2));
+  at.y = static_cast<std::uint16_t>(at.y + ((piece >> across_log2) << level.height_log2));
+  ++in_use_[superblock_of(at)];
+  return Placed{level, at};
 }
 
-std::uint32_t SuperblockStore::superblock_of(TexelPosition at) const {
-  return (std::uint32_t{at.y} >> superblock_log2_) * grid_.width + (std::uint32_t{at.x} >> superblock_log2_);
+TexelPosition SuperblockStore::parent_at(const Provision::Segment& segment, std::uint32_t i) const {
+  const Level parent = numbers_.level(segment.parent);
+  switch (segment.source) {
+    case Provision::Source::kStack:
+      return stacks_[segment.parent][segment.first - i];
+    case Provision::Source::kLeftover:
+      return leftover_[segment.parent][segment.first + i];
+    case Provision::Source::kTail:
+      return row_at(segment.superblock, parent.width_log2, segment.first + (i << parent.height_log2));
+    case Provision::Source::kFree:
+      break;
+  }
+  const std::uint32_t each_log2 = 2 * numbers_.max_log2() - parent.area_log2();
+  const std::uint32_t in = i & ((1U << each_log2) - 1);
+  return row_at(free_[segment.first - (i >> each_log2)], parent.width_log2, in << parent.height_log2);
 }
 
-std::uint32_t SuperblockStore::rows(std::uint32_t width_log2) const {
-  return 1U << (2 * superblock_log2_ - width_log2);
+void SuperblockStore::settle() {
+  for (std::size_t i = 0; i < stacks_.size(); ++i) {
+    stacks_[i].resize(stack_size_[i]);
+    const auto first = leftover_[i].begin() + leftover_taken_[i];
+    stacks_[i].insert(stacks_[i].end(), first, leftover_[i].end());
+    stack_size_[i] = static_cast<std::uint32_t>(stacks_[i].size());
+    leftover_[i].clear();
+    leftover_taken_[i] = 0;
+  }
 }
 
-TexelPosition SuperblockStore::tail_position(std::uint32_t width_log2) const {
-  const Tail& tail = tails_[width_log2];
-  const std::uint32_t column = tail.row >> superblock_log2_;
-  const std::uint32_t row = tail.row & ((1U << superblock_log2_) - 1);
-  const std::uint32_t x = ((tail.superblock % grid_.width) << superblock_log2_) + (column << width_log2);
-  const std::uint32_t y = ((tail.superblock / grid_.width) << superblock_log2_) + row;
+TexelPosition SuperblockStore::row_at(std::uint32_t superblock, std::uint32_t width_log2,
+                                      std::uint32_t row) const {
+  const std::uint32_t side_log2 = numbers_.max_log2();
+  const std::uint32_t x = ((superblock % grid_.width) << side_log2) + ((row >> side_log2) << width_log2);
+  const std::uint32_t y = ((superblock / grid_.width) << side_log2) + (row & ((1U << side_log2) - 1));
   return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
 }
 
-std::uint64_t SuperblockStore::area() const { return grid_.area() << (2 * superblock_log2_); }
+std::uint32_t SuperblockStore::superblock_of(TexelPosition at) const {
+  const std::uint32_t side_log2 = numbers_.max_log2();
+  return (std::uint32_t{at.y} >> side_log2) * grid_.width + (std::uint32_t{at.x} >> side_log2);
+}
+
+std::uint32_t SuperblockStore::rows(std::uint32_t width_log2) const {
+  return 1U << (2 * numbers_.max_log2() - width_log2);
+}
+
+std::uint64_t SuperblockStore::area() const { return grid_.area() << (2 * numbers_.max_log2()); }
 
 AtlasUsage SuperblockStore::usage() const {
   AtlasUsage usage;
   usage.allocated = allocated_;
-  usage.free = std::uint64_t{free_superblocks()} << (2 * superblock_log2_);
-  for (std::uint32_t w = min_log2_; w <= superblock_log2_; ++w) {
+  usage.free = std::uint64_t{free_count_} << (2 * numbers_.max_log2());
+  for (std::uint32_t w = numbers_.min_log2(); w <= numbers_.max_log2(); ++w) {
     const Tail& tail = tails_[w];
     if (tail.superblock != Tail::kNone) usage.partial_tail += std::uint64_t{rows(w) - tail.row} << w;
-    for (std::uint32_t h = min_log2_; h <= w; ++h) {
-      const Level level{static_cast<std::uint8_t>(w), static_cast<std::uint8_t>(h)};
-      usage.on_stacks += stacked(level) * level.area();
-    }
   }
+  for (std::uint32_t i = 0; i < numbers_.count(); ++i) {
+    usage.on_stacks += std::uint64_t{stack_size_[i]} << numbers_.level(i).area_log2();
+  }
+  for (const Block& block : deferred_) usage.on_stacks += block.area();
   return usage;
 }
 

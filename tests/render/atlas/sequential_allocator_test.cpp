@@ -219,7 +219,7 @@ TEST(SequentialAllocator, APatchThatLosesItsBlockIsBothRemovedAndRefused) {
   const auto& change = allocator->update(after, false);
   ASSERT_EQ(checker.check(*allocator, after, change), "");
   EXPECT_EQ(change.removed, (std::vector{PatchId{0}, PatchId{3}}));
-  EXPECT_EQ(change.refused, (std::vector{PatchId{0}, PatchId{4}, PatchId{5}}));
+  EXPECT_EQ(change.refused, (std::vector{PatchId{0}, PatchId{6}, PatchId{7}}));
 }
 
 TEST(SequentialAllocator, NewMemoryGoesToTheLargestFirstAndFillsOneSuperblockPerWidth) {
