@@ -43,6 +43,7 @@ TEST(Flip, IsZeroForEqualPicturesAndIgnoresAlpha) {
 }
 
 // Flat pictures have no features, and their blur changes nothing: the redistributed colour distance is left.
+// Tolerances: an error of 1e-7 in XYZ, which is float, is one of 2e-4 in the chroma of a light grey.
 TEST(Flip, MatchesTheClosedFormOfFlatPictures) {
   const Extent2D extent{24, 16};
   // By hand: Lab (100, 0, 0) and (0, 0, 0). From green to blue, Hunt adjusted, is 203.302 apart, the largest.
@@ -51,11 +52,11 @@ TEST(Flip, MatchesTheClosedFormOfFlatPictures) {
   const double black_to_white = std::pow(100.0, 0.7);
   ASSERT_GT(black_to_white, knee);
   const double expected = 0.95 + 0.05 * (black_to_white - knee) / (largest - knee);
-  EXPECT_NEAR(flip(Picture(extent, kBlack), Picture(extent, kWhite)), expected, 1e-6);
+  EXPECT_NEAR(flip(Picture(extent, kBlack), Picture(extent, kWhite)), expected, 2e-5);
   EXPECT_NEAR(flip(Picture(extent, kGreen), Picture(extent, kBlue)), 1, 1e-5);
   // Grey 119 has L* = 50.03444, grey 118 has 49.63701 (below the knee, where the map is linear in d^0.7).
   const Picture grey(extent, {119, 119, 119, 255});
-  EXPECT_NEAR(flip(grey, Picture(extent, {118, 118, 118, 255})), 0.95 * std::pow(0.39742, 0.7) / knee, 1e-5);
+  EXPECT_NEAR(flip(grey, Picture(extent, {118, 118, 118, 255})), 0.95 * std::pow(0.39742, 0.7) / knee, 3e-5);
 }
 
 TEST(Flip, IsSymmetricAndWithinZeroAndOne) {
