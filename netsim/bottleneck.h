@@ -1,6 +1,6 @@
 #pragma once
 
-#include "netsim/profile.h"
+#include "netsim/link_profile.h"
 
 #include <cstdint>
 #include <optional>

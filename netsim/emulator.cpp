@@ -1,6 +1,5 @@
 #include "netsim/emulator.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace atlaswire::netsim {
@@ -11,108 +10,85 @@ constexpr Direction kDirections[] = {Direction::kUp, Direction::kDown};
 
 }  // namespace
 
-Emulator::Emulator(const Profile& profile, std::uint64_t seed, Time start)
-    : path_(profile, seed, start),
-      round_trip_(profile.up.steps[0].parameters.delay.base + profile.down.steps[0].parameters.delay.base) {}
+Emulator::Emulator(const Profile& profile, std::uint64_t seed, Time start) : profile_(profile) {
+  for (std::uint32_t i = 0; i < profile.paths(); ++i) paths_.emplace_back(profile, PathId{i}, seed, start);
+}
 
-void Emulator::datagram(FlowId flow, Direction direction, ByteBuffer octets, Time now) {
-  advance(direction, now);
-  path_.link(direction).send(std::move(octets), now, flow);
-  sort_decisions(direction);
+Lane& Emulator::lane(FlowId flow, FlowKind kind, Direction direction) {
+  return at(profile_.path_of(flow, kind)).lane(direction);
+}
+
+const Lane& Emulator::lane(FlowId flow, FlowKind kind, Direction direction) const {
+  return paths_[static_cast<std::size_t>(profile_.path_of(flow, kind))].lane(direction);
+}
+
+void Emulator::datagram(FlowId flow, Direction direction, ByteBuffer octets, Time now, Ecn ecn) {
+  lane(flow, FlowKind::kDatagram, direction).datagram(flow, std::move(octets), now, ecn);
 }
 
 void Emulator::stream(FlowId flow, Direction direction, ByteView octets, Time now) {
-  advance(direction, now);
-  const auto [entry, fresh] = streams(direction).try_emplace(flow, flow, round_trip_);
-  entry->second.send(octets, path_.link(direction), now);
-  sort_decisions(direction);
+  lane(flow, FlowKind::kStream, direction).stream(flow, octets, now);
 }
 
 std::size_t Emulator::outstanding(FlowId flow, Direction direction) const {
-  const auto found = streams(direction).find(flow);
-  return found == streams(direction).end() ? 0 : found->second.outstanding();
+  return lane(flow, FlowKind::kStream, direction).outstanding(flow);
+}
+
+std::size_t Emulator::stream_room(FlowId flow, Direction direction) const {
+  return lane(flow, FlowKind::kStream, direction).stream_room();
 }
 
 void Emulator::close_stream(FlowId flow) {
-  for (const Direction d : kDirections) streams(d).erase(flow);
-}
-
-void Emulator::sort_decisions(Direction direction) {
-  for (const Decision& decision : path_.link(direction).take_decisions()) {
-    decisions_.push_back({direction, decision});
-    const auto stream = streams(direction).find(decision.flow);
-    if (stream != streams(direction).end()) stream->second.decided(decision);
-  }
-}
-
-void Emulator::hand_out(Direction direction, Datagram datagram) {
-  const auto stream = streams(direction).find(datagram.flow);
-  if (stream == streams(direction).end()) {
-    out_.push_back({datagram.flow, direction, datagram.arrival, std::move(datagram.payload)});
-    return;
-  }
-  stream->second.arrived(datagram);
-  ByteBuffer octets = stream->second.take();
-  if (!octets.empty()) out_.push_back({datagram.flow, direction, datagram.arrival, std::move(octets)});
-}
-
-std::optional<Time> Emulator::next_of(Direction direction) const {
-  std::optional<Time> next = path_.link(direction).next_event();
-  for (const auto& [flow, stream] : streams(direction)) {
-    if (const auto repeat = stream.next_repeat()) next = next ? std::min(*next, *repeat) : *repeat;
-  }
-  return next;
-}
-
-void Emulator::advance(Direction direction, Time now) {
-  // From event to event: a repeat must enter the link at its own time, not when somebody looks.
-  Link& link = path_.link(direction);
-  while (const auto at = next_of(direction)) {
-    if (*at > now) return;
-    for (Datagram& datagram : link.deliver(*at)) hand_out(direction, std::move(datagram));
-    sort_decisions(direction);
-    for (auto& [flow, stream] : streams(direction)) {
-      const std::uint64_t before = stream.repeats();
-      stream.repeat(link, *at);
-      stream_repeats_ += stream.repeats() - before;
-    }
-    sort_decisions(direction);
-  }
+  for (const Direction d : kDirections) lane(flow, FlowKind::kStream, d).close_stream(flow);
 }
 
 std::optional<Time> Emulator::next_event() const {
-  const auto up = next_of(Direction::kUp);
-  const auto down = next_of(Direction::kDown);
-  std::optional<Time> next = !up || !down ? (up ? up : down) : std::min(*up, *down);
+  std::optional<Time> next;
+  for (const Path& path : paths_) next = earlier(next, path.next_event());
   return next;
 }
 
 std::optional<Time> Emulator::next_arrival() const {
-  const auto up = path_.link(Direction::kUp).next_arrival();
-  const auto down = path_.link(Direction::kDown).next_arrival();
-  return !up || !down ? (up ? up : down) : std::min(*up, *down);
-}
-
-std::size_t Emulator::stream_room(Direction direction) const {
-  const Link& link = path_.link(direction);
-  std::uint64_t half = (link.backlog() + link.room()) / 2;
-  if (link.backlog() == 0) half = std::max<std::uint64_t>(half, StreamLink::kSegmentOctets);
-  return half > link.backlog() ? half - link.backlog() : 0;
+  std::optional<Time> next;
+  for (const Path& path : paths_) next = earlier(next, path.next_arrival());
+  return next;
 }
 
 void Emulator::finish() {
-  for (const Direction d : kDirections) {
-    streams(d).clear();
-    path_.link(d).finish();
-    sort_decisions(d);
+  for (Path& path : paths_) {
+    for (const Direction d : kDirections) path.lane(d).finish();
   }
 }
 
 std::vector<Delivery> Emulator::deliver(Time now) {
-  for (const Direction d : kDirections) advance(d, now);
-  return std::exchange(out_, {});
+  std::vector<Delivery> out;
+  for (Path& path : paths_) {
+    for (const Direction d : kDirections) {
+      path.lane(d).advance(now);
+      for (Datagram& datagram : path.lane(d).take_arrived())
+        out.push_back({datagram.flow, d, datagram.arrival, std::move(datagram.payload), datagram.ecn});
+    }
+  }
+  return out;
 }
 
-std::vector<DirectedDecision> Emulator::take_decisions() { return std::exchange(decisions_, {}); }
+std::vector<DirectedDecision> Emulator::take_decisions() {
+  std::vector<DirectedDecision> out;
+  for (std::uint32_t i = 0; i < paths(); ++i) {
+    for (const Direction d : kDirections) {
+      for (const Decision& decision : at(PathId{i}).lane(d).take_decisions())
+        out.push_back({d, decision, PathId{i}});
+    }
+  }
+  return out;
+}
+
+std::uint64_t Emulator::stream_repeats() const {
+  std::uint64_t sum = 0;
+  for (const Path& path : paths_) {
+    for (const Direction d : kDirections) sum += path.lane(d).repeats();
+  }
+  return sum;
+}
 
 }  // namespace atlaswire::netsim

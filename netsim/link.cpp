@@ -48,7 +48,7 @@ Link::Link(LinkProfile profile, std::uint64_t seed, Time start)
   AW_ASSERT(!profile_.steps.empty());
 }
 
-std::uint64_t Link::send(ByteBuffer payload, Time now, FlowId flow, bool ecn_capable) {
+std::uint64_t Link::send(ByteBuffer payload, Time now, FlowId flow, Ecn ecn) {
   advance(now);
   last_sent_ = now;
   const LinkParameters& p = parameters();
@@ -56,10 +56,10 @@ std::uint64_t Link::send(ByteBuffer payload, Time now, FlowId flow, bool ecn_cap
   packet.decision.packet = packets_++;
   packet.decision.flow = flow;
   packet.decision.size = static_cast<std::uint32_t>(payload.size());
+  packet.decision.ecn = ecn;
   packet.decision.arrived = now;
   packet.decision.left_queue = now;
   packet.octets = payload.size() + p.overhead.count;
-  packet.ecn_capable = ecn_capable;
   packet.lost = loss_.lose(p.loss, packet.decision.packet);
   packet.copy = air_.uniform() < p.duplicate;
   packet.decision.corrupted = air_.uniform() < p.corrupt && !payload.empty();
@@ -82,7 +82,7 @@ bool Link::admit(Waiting& packet, Time now) {
   if (profile_.steps[step_].down) {
     fate = Fate::kBlackout;
   } else if (queue.policy == QueueModel::Policy::kPie && pie_.drop(queue, backlog_, head_delay(now))) {
-    const bool mark = queue.ecn && packet.ecn_capable && pie_.probability() < 0.1;
+    const bool mark = queue.ecn && packet.can_be_marked() && pie_.probability() < 0.1;
     packet.decision.marked = mark;
     if (!mark) fate = Fate::kEarlyDrop;
   }
@@ -206,7 +206,7 @@ void Link::serve_head(const Service& service) {
   }
   if (queue.policy == QueueModel::Policy::kCodel &&
       codel_.drop(queue, sojourn, backlog_ - head.octets, service.start)) {
-    if (!(queue.ecn && head.ecn_capable)) {
+    if (!(queue.ecn && head.can_be_marked())) {
       drop_front(Fate::kEarlyDrop, service.start);
       return;
     }
@@ -243,10 +243,10 @@ void Link::propagate(Waiting packet, Time left) {
 
 void Link::launch(const Waiting& packet, Decision decision) {
   decide(decision, packet.payload);
-  in_flight_.push_back(
-      {decision.delivered,
-       launches_++,
-       {decision.packet, decision.flow, decision.delivered, packet.payload, decision.marked}});
+  in_flight_.push_back({decision.delivered,
+                        launches_++,
+                        {decision.packet, decision.flow, decision.delivered, packet.payload,
+                         decision.marked ? Ecn::kCongestion : decision.ecn}});
   std::push_heap(in_flight_.begin(), in_flight_.end(), kLater);
 }
 

@@ -33,8 +33,9 @@ class Link {
   /// Profile times count from `start`.
   Link(LinkProfile profile, std::uint64_t seed, Time start);
 
-  /// A packet of `flow` enters; gives its number. `ecn_capable`: marking may replace a drop by CoDel or PIE.
-  std::uint64_t send(ByteBuffer payload, Time now, FlowId flow = {}, bool ecn_capable = false);
+  /// A packet of `flow` enters; gives its number. With a capable `ecn`, marking may replace a drop by CoDel
+  /// or PIE.
+  std::uint64_t send(ByteBuffer payload, Time now, FlowId flow = {}, Ecn ecn = Ecn::kNotCapable);
   /// The next instant at which anything inside may happen; empty: idle until the next `send`.
   [[nodiscard]] std::optional<Time> next_event() const;
   /// What has arrived by `now`, in order of arrival.
@@ -61,8 +62,8 @@ class Link {
     Duration propagation{};
     bool lost = false;
     bool copy = false;
-    bool ecn_capable = false;
     std::uint64_t flipped_bit = 0;
+    [[nodiscard]] bool can_be_marked() const { return decision.ecn != Ecn::kNotCapable; }
   };
   struct InFlight {
     Time arrival{};

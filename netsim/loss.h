@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/random.h"
-#include "netsim/profile.h"
+#include "netsim/link_profile.h"
 
 namespace atlaswire::netsim {
 

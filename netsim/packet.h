@@ -26,12 +26,26 @@ const char* fate_name(Fate fate);
 /// carries them.
 enum class FlowId : std::uint32_t {};
 
+/// What a flow carries.
+enum class FlowKind : std::uint8_t { kDatagram, kStream };
+
+/// Which way a packet goes.
+enum class Direction : std::uint8_t { kUp = 0, kDown = 1 };
+
+/// Which of a profile's paths a flow takes: 0 is the one that flows share, n belongs to the n-th rule for
+/// flows.
+enum class PathId : std::uint32_t {};
+
+/// The two ECN bits of an IP header, as they are on the wire (RFC 3168, section 5).
+enum class Ecn : std::uint8_t { kNotCapable = 0, kCapable1 = 1, kCapable0 = 2, kCongestion = 3 };
+
 /// One packet's way through one direction, complete when its fate is known. Equal arrivals, profile and
 /// seed give equal decisions, byte for byte, live or in virtual time.
 struct Decision {
   std::uint64_t packet = 0;  ///< number of the packet, counted from 0 in order of arrival
   FlowId flow{};             ///< as given to `send`
   std::uint32_t size = 0;    ///< octets of payload
+  Ecn ecn{};                 ///< as given to `send`
   Time arrived{};            ///< when it was given to `send`
   Time left_queue{};         ///< when the bottleneck had served it; equals `arrived` when dropped before
   Time delivered{};          ///< when it reaches the far end; meaningless unless delivered
@@ -49,7 +63,7 @@ struct Datagram {
   FlowId flow{};
   Time arrival{};
   ByteBuffer payload;
-  bool marked = false;
+  Ecn ecn{};  ///< as it leaves
 };
 
 }  // namespace atlaswire::netsim

@@ -1,28 +1,35 @@
 #pragma once
 
-#include "netsim/link.h"
+#include "netsim/lane.h"
+#include "netsim/profile.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
-#include <vector>
 
 namespace atlaswire::netsim {
 
-/// Which way a packet goes.
-enum class Direction : std::uint8_t { kUp = 0, kDown = 1 };
+/// The earlier of two instants that may not be known.
+[[nodiscard]] inline std::optional<Time> earlier(std::optional<Time> a, std::optional<Time> b) {
+  return !a || !b ? (a ? a : b) : std::min(*a, *b);
+}
 
-/// Both directions of a profile. The directions' draws are independent; each is a function of the seed.
+/// Both directions of one of a profile's paths. The draws of paths and of directions are independent; each is
+/// a function of the seed.
 class Path {
  public:
-  Path(const Profile& profile, std::uint64_t seed, Time start);
-  Link& link(Direction direction) { return links_[static_cast<std::size_t>(direction)]; }
-  [[nodiscard]] const Link& link(Direction direction) const {
-    return links_[static_cast<std::size_t>(direction)];
+  Path(const Profile& profile, PathId id, std::uint64_t seed, Time start);
+  Lane& lane(Direction direction) { return lanes_[static_cast<std::size_t>(direction)]; }
+  [[nodiscard]] const Lane& lane(Direction direction) const {
+    return lanes_[static_cast<std::size_t>(direction)];
   }
+  Link& link(Direction direction) { return lane(direction).link(); }
   [[nodiscard]] std::optional<Time> next_event() const;
+  /// When something next comes out, as far as is known; empty: nothing is past the bottleneck.
+  [[nodiscard]] std::optional<Time> next_arrival() const;
 
  private:
-  std::array<Link, 2> links_;
+  std::array<Lane, 2> lanes_;
 };
 
 }  // namespace atlaswire::netsim

@@ -77,7 +77,7 @@ ByteBuffer ip_packet(const DirectedDecision& d, ByteView payload, bool stream) {
   ByteBuffer ip;
   ByteWriter w(ip);
   w.write(std::uint8_t{0x45});
-  w.write(static_cast<std::uint8_t>(d.decision.marked ? 3 : 0));
+  w.write(static_cast<std::uint8_t>(d.decision.marked ? Ecn::kCongestion : d.decision.ecn));
   w.write(static_cast<std::uint16_t>(headers + payload.size()));
   w.write(static_cast<std::uint16_t>(d.decision.packet));  // identification
   w.write(std::uint16_t{0});
@@ -136,8 +136,10 @@ ByteBuffer pcapng_packet(const DirectedDecision& d, ByteView payload, bool strea
 
 std::string describe(const DirectedDecision& d) {
   const Decision& x = d.decision;
-  std::string text = fmt::format("{} packet {}, flow {}: {}", d.direction == Direction::kUp ? "up" : "down",
-                                 x.packet, static_cast<std::uint32_t>(x.flow), fate_name(x.fate));
+  std::string text = d.direction == Direction::kUp ? "up" : "down";
+  if (d.path != PathId{0}) text += fmt::format(" path {}", static_cast<std::uint32_t>(d.path));
+  text +=
+      fmt::format(" packet {}, flow {}: {}", x.packet, static_cast<std::uint32_t>(x.flow), fate_name(x.fate));
   const double queued = to_ms(x.left_queue - x.arrived);
   if (x.fate == Fate::kDelivered) {
     text +=

@@ -28,16 +28,18 @@ RelayRecorder::RelayRecorder(const std::string& log_file, const std::string& pca
       log_(open_for_writing(log_file)),
       pcapng_(open_for_writing(pcapng_file)),
       start_(start),
-      start_unix_(start_unix),
-      taps_{DirectionTap(*this, Direction::kUp), DirectionTap(*this, Direction::kDown)} {
+      start_unix_(start_unix) {
   if (log_.is_open()) log_ << decision_log_header() << '\n';
   if (pcapng_.is_open()) write_bytes(pcapng_, pcapng_opening());
 }
 
 void RelayRecorder::attach(Emulator& emulator) {
   if (!pcapng_.is_open()) return;
-  for (const Direction d : {Direction::kUp, Direction::kDown}) {
-    emulator.set_tap(d, &taps_[static_cast<std::size_t>(d)]);
+  for (std::uint32_t i = 0; i < emulator.paths(); ++i) {
+    for (const Direction d : {Direction::kUp, Direction::kDown}) {
+      taps_.push_back(std::make_unique<LaneTap>(*this, PathId{i}, d));
+      emulator.set_tap(PathId{i}, d, taps_.back().get());
+    }
   }
 }
 

@@ -2,11 +2,11 @@
 
 #include "netsim/emulator.h"
 
-#include <array>
 #include <fstream>
-#include <optional>
+#include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace atlaswire::netsim {
 
@@ -24,15 +24,17 @@ class RelayRecorder {
   void close();
 
  private:
-  class DirectionTap final : public Tap {
+  class LaneTap final : public Tap {
    public:
-    DirectionTap(RelayRecorder& recorder, Direction direction) : recorder_(recorder), direction_(direction) {}
+    LaneTap(RelayRecorder& recorder, PathId path, Direction direction)
+        : recorder_(recorder), path_(path), direction_(direction) {}
     void decided(const Decision& decision, ByteView payload) override {
-      recorder_.record(DirectedDecision{direction_, decision}, payload);
+      recorder_.record(DirectedDecision{direction_, decision, path_}, payload);
     }
 
    private:
     RelayRecorder& recorder_;
+    PathId path_;
     Direction direction_;
   };
   void record(const DirectedDecision& d, ByteView payload);
@@ -44,7 +46,7 @@ class RelayRecorder {
   Time start_;
   Duration start_unix_;
   std::set<FlowId> streams_;
-  std::array<DirectionTap, 2> taps_;
+  std::vector<std::unique_ptr<LaneTap>> taps_;  ///< the emulator borrows them
 };
 
 }  // namespace atlaswire::netsim

@@ -121,7 +121,7 @@ void RelayTcp::wait_readable(Connection& c, Direction d) {
 std::size_t RelayTcp::room(Connection& c, Direction d) const {
   const std::size_t held = context_->emulator.outstanding(c.flow, d) + c.to(d).out.size();
   const std::size_t window = held < kWindow ? kWindow - held : 0;
-  return std::min(window, context_->emulator.stream_room(d));
+  return std::min(window, context_->emulator.stream_room(c.flow, d));
 }
 
 void RelayTcp::read(Connection& c, Direction d) {

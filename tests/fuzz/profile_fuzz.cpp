@@ -16,8 +16,10 @@ void run(const atlaswire::netsim::Profile& profile) {
   for (int i = 0; i < 40; ++i) {
     const Time now{std::chrono::milliseconds(3) * i};
     for (const auto way : {netsim::Direction::kUp, netsim::Direction::kDown}) {
-      emulator.datagram(netsim::FlowId{1}, way, ByteBuffer(1200), now);
-      ++sent;
+      for (const std::uint32_t flow : {1U, 2U}) {
+        emulator.datagram(netsim::FlowId{flow}, way, ByteBuffer(1200), now, static_cast<netsim::Ecn>(i % 4));
+        ++sent;
+      }
     }
     for (const netsim::Delivery& d : emulator.deliver(now)) AW_ASSERT(d.arrival <= now);
   }

@@ -1,6 +1,7 @@
 #include "netsim/bottleneck.h"
 
 #include "base/random.h"
+#include "netsim/profile.h"
 
 #include <gtest/gtest.h>
 

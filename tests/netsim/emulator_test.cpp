@@ -92,6 +92,55 @@ TEST(Emulator, ALostSegmentStallsAllBehindItForARoundTrip) {
   EXPECT_EQ(emulator.outstanding(kControl, Direction::kDown), 0U);
 }
 
+/// The media's decisions of a run beside a stream, under `profile` and more of it.
+std::vector<DirectedDecision> media_decisions(const std::string& more) {
+  const auto profile = parse_profile(std::string(shipped_profile_text("lossy-wifi")) + more, "test", ".");
+  EXPECT_TRUE(profile.has_value()) << profile.error().message();
+  std::vector<DirectedDecision> media;
+  for (const DirectedDecision& d : drive(*profile, 5, Duration::zero()).decisions) {
+    if (d.decision.flow == kMedia) media.push_back(d);
+  }
+  return media;
+}
+
+TEST(Emulator, FlowsWithAPathOfTheirOwnLeaveOthersAlone) {
+  const auto shared = media_decisions("");
+  const auto apart = media_decisions("[[flow]]\nkind = \"stream\"\n");
+  const auto apart_slowly =
+      media_decisions("[[flow]]\nkind = \"stream\"\n[flow.down]\nrate = { mbps = 0.1 }\n");
+  EXPECT_EQ(apart, apart_slowly) << "what happens on the streams' path does not matter";
+  ASSERT_EQ(apart.size(), 400U);
+  EXPECT_EQ(apart.back().decision.packet, 399U);
+  EXPECT_EQ(apart.back().path, PathId{0});
+  EXPECT_GT(shared.back().decision.packet, 800U) << "streams and media are numbered together";
+  const auto own = media_decisions("[[flow]]\nnumbers = [1]\n");
+  EXPECT_EQ(own.back().path, PathId{1});
+  EXPECT_NE(own[0].decision.delivered, apart[0].decision.delivered) << "draws of its own";
+}
+
+TEST(Emulator, AStreamsRepeatsTakeItsOwnPathsRoundTrip) {
+  const auto profile = parse_profile(R"(
+[both]
+delay = { base_ms = 5 }
+[[flow]]
+numbers = [2]
+[flow.both]
+delay = { base_ms = 50 }
+loss = { kind = "list", packets = [0] }
+)",
+                                     "test", ".");
+  ASSERT_TRUE(profile.has_value()) << profile.error().message();
+  Emulator emulator(*profile, 1, Time{});
+  emulator.stream(kControl, Direction::kDown, ByteBuffer(10), Time{});
+  emulator.stream(FlowId{3}, Direction::kDown, ByteBuffer(10), Time{});
+  const auto all = emulator.deliver(Time{std::chrono::seconds(1)});
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].flow, FlowId{3});
+  EXPECT_EQ(all[0].arrival, Time{milliseconds(5)});
+  EXPECT_EQ(all[1].arrival, Time{milliseconds(150)});
+  EXPECT_EQ(emulator.stream_repeats(), 1U);
+}
+
 TEST(Emulator, AClosedStreamIsForgotten) {
   Emulator emulator(profile_named("paper-sas-20"), 1, Time{});
   emulator.stream(kControl, Direction::kUp, ByteBuffer(100), Time{});

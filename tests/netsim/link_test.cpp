@@ -230,8 +230,8 @@ TEST(Link, EcnMarksCapablePacketsInsteadOfDropping) {
   int marked = 0;
   Time now{};
   for (int i = 0; i < 3000; ++i, now += microseconds(900)) {
-    link.send(ByteBuffer(972), now, FlowId{}, true);
-    for (const Datagram& d : link.deliver(now)) marked += d.marked ? 1 : 0;
+    link.send(ByteBuffer(972), now, FlowId{}, Ecn::kCapable0);
+    for (const Datagram& d : link.deliver(now)) marked += d.ecn == Ecn::kCongestion ? 1 : 0;
   }
   EXPECT_GT(marked, 3);
   for (const Decision& d : link.take_decisions()) EXPECT_NE(d.fate, Fate::kEarlyDrop);
@@ -255,7 +255,7 @@ TEST(Link, NextEventLeadsToEveryArrival) {
 TEST(Path, DirectionsDrawIndependently) {
   const auto profile = load_profile("lossy-wifi");
   ASSERT_TRUE(profile.has_value()) << profile.error().message();
-  Path path(*profile, 5, Time{});
+  Path path(*profile, PathId{0}, 5, Time{});
   std::vector<bool> lost[2];
   for (std::uint64_t i = 0; i < 2000; ++i) {
     for (const Direction d : {Direction::kUp, Direction::kDown})

@@ -67,6 +67,63 @@ TEST(Profile, RefusesWhatCannotBe) {
               HasSubstr("test.toml: up.rate.mbps must be a number from 0"));
 }
 
+constexpr const char* kThreePaths = R"(
+[both]
+delay = { base_ms = 10 }
+rate = { mbps = 8 }
+[[flow]]
+kind = "datagram"
+numbers = [7, 3]
+[flow.both]
+delay = { base_ms = 1 }
+[[flow]]
+kind = "stream"
+[flow.down]
+delay = { base_ms = 50 }
+[[flow.down.step]]
+at_ms = 100
+down = true
+)";
+
+TEST(Profile, FlowsHaveThePathOfTheFirstRuleThatMatches) {
+  const auto p = parse_profile(kThreePaths, "x", ".");
+  ASSERT_TRUE(p.has_value()) << p.error().message();
+  EXPECT_EQ(p->paths(), 3U);
+  EXPECT_EQ(p->path_of(FlowId{1}, FlowKind::kDatagram), PathId{0});
+  EXPECT_EQ(p->path_of(FlowId{3}, FlowKind::kDatagram), PathId{1});
+  EXPECT_EQ(p->path_of(FlowId{7}, FlowKind::kDatagram), PathId{1});
+  EXPECT_EQ(p->path_of(FlowId{3}, FlowKind::kStream), PathId{2});
+  const auto first = [&](PathId path, Direction d) -> const LinkParameters& {
+    return p->link(path, d).steps[0].parameters;
+  };
+  EXPECT_EQ(first(PathId{1}, Direction::kUp).delay.base, std::chrono::milliseconds(1));
+  EXPECT_FALSE(first(PathId{1}, Direction::kUp).rate.rate.has_value()) << "replaced whole";
+  EXPECT_EQ(first(PathId{2}, Direction::kUp).delay.base, std::chrono::milliseconds(10))
+      << "not named: as the shared path";
+  EXPECT_EQ(p->link(PathId{2}, Direction::kDown).steps.size(), 2U);
+  EXPECT_EQ(first(PathId{0}, Direction::kDown).delay.base, std::chrono::milliseconds(10));
+}
+
+TEST(Profile, RefusesRulesThatSayNothing) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"[[flow]]\n", "test.toml: flow.kind or numbers must say which flows"},
+      {"[[flow]]\nkind = \"stream\"\nnumbers = []", "flow.kind or numbers must say which flows"},
+      {"[[flow]]\nkind = \"tcp\"", "flow.kind must be one of datagram, stream"},
+      {"[[flow]]\nnumbers = [0]", "flow.numbers must hold whole numbers from 1 to 4294967295"},
+      {"[[flow]]\nnumbers = [1.5]", "flow.numbers must hold whole numbers"},
+      {"[[flow]]\nnumbers = 3", "flow.numbers must be an array"},
+      {"[[flow]]\nkind = \"stream\"\nrate = { mbps = 1 }", "flow.rate"},
+      {"[[flow]]\nkind = \"stream\"\n[flow.up]\nrate = { mbps = -1 }", "flow.up.rate.mbps must be a number"},
+      {"[flow]\nkind = \"stream\"", "flow must be an array"},
+      {"flow = [1]", "flow must be an array of tables"},
+  };
+  for (const auto& [toml, expected] : cases)
+    EXPECT_THAT(error_of(toml).message(), HasSubstr(expected)) << toml;
+  std::string many;
+  for (std::size_t i = 0; i <= Profile::kMostRules; ++i) many += "[[flow]]\nkind = \"stream\"\n";
+  EXPECT_THAT(error_of(many.c_str()).message(), HasSubstr("more than 16 rules"));
+}
+
 TEST(Profile, UnknownNamesAndFilesSaySo) {
   EXPECT_EQ(load_profile("carrier-pigeon").error().code, ProfileError::kUnknownName);
   EXPECT_EQ(load_profile("no/such.toml").error().code, ProfileError::kCannotRead);
