@@ -1,6 +1,5 @@
 #include "render/display/display_pass.h"
 
-#include "render/gpu/barriers.h"
 #include "render/gpu/offscreen_target.h"
 #include "render/relative_camera.h"
 #include "shaders/display_layout.h"
@@ -14,7 +13,6 @@ namespace atlaswire::render {
 namespace {
 
 using Alpha = PatchClass::Alpha;
-using Usage = vk::ImageUsageFlagBits;
 
 GraphicsSettings pipeline_settings(vk::DescriptorSetLayout layout, Alpha alpha, bool double_sided) {
   return {.name = "display",
@@ -70,9 +68,7 @@ void DisplayPass::draw(const DisplayMesh& mesh, std::uint32_t slot, const Camera
 }
 
 void DisplayPass::prepare(const DisplayMesh& mesh, const Camera& camera) {
-  if (target_ == nullptr || target_->color.extent() != camera.extent) {
-    target_ = std::make_unique<OffscreenTarget>(context_.device(), "display", camera.extent);
-  }
+  fit_target(target_, context_.device(), "display", camera.extent);
   mesh.sort_blended(glm::vec3{camera.pose.position - mesh.origin()}, sorted_);
   if (sorted_.empty()) return;
   const std::size_t bytes = sorted_.size() * sizeof(std::uint32_t);
@@ -88,25 +84,7 @@ void DisplayPass::prepare(const DisplayMesh& mesh, const Camera& camera) {
 
 void DisplayPass::record(const vk::raii::CommandBuffer& commands, const DisplayMesh& mesh, std::uint32_t slot,
                          const Camera& camera) {
-  OffscreenTarget& t = *target_;
-  discard_image(commands, t.color, ImageUse::kColorTarget);
-  discard_image(commands, t.depth, ImageUse::kDepthTarget);
-  const vk::RenderingAttachmentInfo color{
-      .imageView = t.color.view(),
-      .imageLayout = t.color.layout(),
-      .loadOp = vk::AttachmentLoadOp::eClear,
-      .storeOp = vk::AttachmentStoreOp::eStore,
-      .clearValue = vk::ClearColorValue(std::array{background_.x, background_.y, background_.z, 0.0F})};
-  const vk::RenderingAttachmentInfo depth{.imageView = t.depth.view(),
-                                          .imageLayout = t.depth.layout(),
-                                          .loadOp = vk::AttachmentLoadOp::eClear,
-                                          .storeOp = vk::AttachmentStoreOp::eDontCare,
-                                          .clearValue = vk::ClearDepthStencilValue{.depth = 0.0F}};
-  commands.beginRendering({.renderArea = {.extent = {camera.extent.width, camera.extent.height}},
-                           .layerCount = 1,
-                           .colorAttachmentCount = 1,
-                           .pColorAttachments = &color,
-                           .pDepthAttachment = &depth});
+  target_->begin(commands, background_);
   if (!mesh.empty()) draw_classes(commands, mesh, slot, camera);
   commands.endRendering();
 }
@@ -120,7 +98,6 @@ void DisplayPass::draw_classes(const vk::raii::CommandBuffer& commands, const Di
       .camera_low = view.low,
       .atlas_from_fixed = {0.5F / static_cast<float>(atlas_->colors().width),
                            0.5F / static_cast<float>(atlas_->colors().height)}};
-  set_viewport(commands, camera.extent);
   commands.bindVertexBuffers(0, mesh.vertices().handle(), vk::DeviceSize{0});
   commands.bindIndexBuffer(mesh.indices().handle(), 0, vk::IndexType::eUint32);
   const auto bind = [&](Alpha alpha, bool double_sided) {
@@ -144,20 +121,7 @@ void DisplayPass::draw_classes(const vk::raii::CommandBuffer& commands, const Di
 }
 
 const Picture& DisplayPass::read_back() {
-  if (target_ == nullptr) return picture_;
-  OffscreenTarget& t = *target_;
-  const Extent2D extent = t.color.extent();
-  if (picture_.extent != extent) picture_ = Picture(extent);
-  context_.run([&](const vk::raii::CommandBuffer& commands) {
-    use_image(commands, t.color, ImageUse::kTransferSource);
-    const vk::BufferImageCopy region{
-        .imageSubresource = {.aspectMask = vk::ImageAspectFlagBits::eColor, .layerCount = 1},
-        .imageExtent = {extent.width, extent.height, 1}};
-    commands.copyImageToBuffer(t.color.handle(), t.color.layout(), t.readback.handle(), region);
-    writes_to_host(commands);
-  });
-  t.readback.invalidate();
-  std::memcpy(picture_.rgba.data(), t.readback.mapped().data(), picture_.rgba.size());
+  if (target_ != nullptr) render::read_back(context_, *target_, picture_);
   return picture_;
 }
 

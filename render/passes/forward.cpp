@@ -1,18 +1,13 @@
 #include "render/passes/forward.h"
 
-#include "render/gpu/barriers.h"
-#include "render/gpu/offscreen_target.h"
 #include "render/passes/frustum.h"
 #include "render/passes/tonemap.h"
 #include "render/relative_camera.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace atlaswire::render {
 namespace {
-
-using Usage = vk::ImageUsageFlagBits;
 
 gpu_layout::DrawConstants draw_constants(const RelativeCamera& camera) {
   return {.clip_from_relative = camera.clip_from_relative,
@@ -56,55 +51,27 @@ ForwardPass::ForwardPass(Device& device, const SceneGpu& scene)
       pipelines_(device, scene, MaterialPipelines::Target::kCamera),
       first_triangle_(count_triangles(scene.scene())) {}
 
-ForwardPass::~ForwardPass() = default;
-
 Picture ForwardPass::render(const Camera& camera) {
   Picture picture(camera.extent);
   if (picture.empty()) return picture;
-  if (target_ == nullptr || target_->color.extent() != camera.extent) {
-    target_ = std::make_unique<OffscreenTarget>(context_.device(), "forward", camera.extent);
-  }
-  context_.run([&](const vk::raii::CommandBuffer& commands) { record(commands, camera); });
-  target_->readback.invalidate();
-  std::memcpy(picture.rgba.data(), target_->readback.mapped().data(), picture.rgba.size());
+  fit_target(target_, context_.device(), "forward", camera.extent);
+  context_.run([&](const vk::raii::CommandBuffer& commands) {
+    record(commands, camera, *target_);
+    target_->record_readback(commands);
+  });
+  target_->copy_to(picture);
   return picture;
 }
 
-void ForwardPass::record(const vk::raii::CommandBuffer& commands, const Camera& camera) {
-  OffscreenTarget& t = *target_;
+void ForwardPass::record(const vk::raii::CommandBuffer& commands, const Camera& camera,
+                         OffscreenTarget& target, OffscreenTarget::Depth depth_after) const {
   const Scene& scene = scene_->scene();
-  const glm::vec3 sky = display_color(scene.background, scene.exposure);
-  discard_image(commands, t.color, ImageUse::kColorTarget);
-  discard_image(commands, t.depth, ImageUse::kDepthTarget);
-  const vk::RenderingAttachmentInfo color{
-      .imageView = t.color.view(),
-      .imageLayout = t.color.layout(),
-      .loadOp = vk::AttachmentLoadOp::eClear,
-      .storeOp = vk::AttachmentStoreOp::eStore,
-      .clearValue = vk::ClearColorValue(std::array{sky.x, sky.y, sky.z, 0.0F})};
-  const vk::RenderingAttachmentInfo depth{.imageView = t.depth.view(),
-                                          .imageLayout = t.depth.layout(),
-                                          .loadOp = vk::AttachmentLoadOp::eClear,
-                                          .storeOp = vk::AttachmentStoreOp::eDontCare,
-                                          .clearValue = vk::ClearDepthStencilValue{.depth = 0.0F}};
-  commands.beginRendering({.renderArea = {.extent = {camera.extent.width, camera.extent.height}},
-                           .layerCount = 1,
-                           .colorAttachmentCount = 1,
-                           .pColorAttachments = &color,
-                           .pDepthAttachment = &depth});
-  set_viewport(commands, camera.extent);
+  target.begin(commands, display_color(scene.background, scene.exposure), depth_after);
   draw_scene(commands, camera);
   commands.endRendering();
-
-  use_image(commands, t.color, ImageUse::kTransferSource);
-  const vk::BufferImageCopy region{
-      .imageSubresource = {.aspectMask = vk::ImageAspectFlagBits::eColor, .layerCount = 1},
-      .imageExtent = {camera.extent.width, camera.extent.height, 1}};
-  commands.copyImageToBuffer(t.color.handle(), t.color.layout(), t.readback.handle(), region);
-  writes_to_host(commands);
 }
 
-void ForwardPass::draw_scene(const vk::raii::CommandBuffer& commands, const Camera& camera) {
+void ForwardPass::draw_scene(const vk::raii::CommandBuffer& commands, const Camera& camera) const {
   const Scene& scene = scene_->scene();
   const RelativeCamera view = relative_camera(camera, scene.origin);
   gpu_layout::DrawConstants constants = draw_constants(view);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/camera.h"
+#include "render/gpu/offscreen_target.h"
 #include "render/image/picture.h"
 #include "render/passes/material_pipelines.h"
 #include "render/passes/scene_gpu.h"
@@ -9,21 +10,20 @@
 
 namespace atlaswire::render {
 
-struct OffscreenTarget;
-
 /// The ground truth: a scene drawn for a camera with the same materials that shade the atlas, depth test,
 /// glTF's culling, masks discarded, and blended patches over them from far to near. One thread at a time.
 class ForwardPass {
  public:
   ForwardPass(Device& device, const SceneGpu& scene);
-  ~ForwardPass();
 
   /// Renders and waits. Alpha: 255 where opaque or masked geometry was hit, 0 where nothing was drawn.
   Picture render(const Camera& camera);
+  /// Records the same drawing into a target of the camera's extent, and no read-back.
+  void record(const vk::raii::CommandBuffer& commands, const Camera& camera, OffscreenTarget& target,
+              OffscreenTarget::Depth depth_after = OffscreenTarget::Depth::kDropped) const;
 
  private:
-  void record(const vk::raii::CommandBuffer& commands, const Camera& camera);
-  void draw_scene(const vk::raii::CommandBuffer& commands, const Camera& camera);
+  void draw_scene(const vk::raii::CommandBuffer& commands, const Camera& camera) const;
 
   SubmitContext context_;
   const SceneGpu* scene_;
