@@ -15,25 +15,42 @@ for option in "$@"; do
     *) echo "setup.sh: error: unknown option '$option'; see --help" >&2; exit 2 ;;
   esac
 done
-mapfile -t packages < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$here/packages.txt" | grep -E "$lines" | sed 's/ run$//')
+unpacked=/usr/local/lib/atlaswire/aside
+listed() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$here/packages.txt" | grep -E "$lines"; }
+mapfile -t packages < <(listed | grep -v ' aside$' | sed 's/ run$//')
+mapfile -t aside < <(listed | sed -n 's/ aside$//p')
 missing=()
+missing_aside=()
 for package in "${packages[@]}"; do
   status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
   [ "$status" = installed ] || missing+=("$package")
 done
-if [ ${#missing[@]} -eq 0 ]; then
+for package in "${aside[@]}"; do
+  [ -e "$unpacked/$package" ] || missing_aside+=("$package")
+done
+if [ $((${#missing[@]} + ${#missing_aside[@]})) -eq 0 ]; then
   exit 0
 fi
 if [ -n "$check" ]; then
-  printf 'missing: %s\n' "${missing[*]}"
+  printf 'missing: %s\n' "${missing[*]} ${missing_aside[*]}"
   exit 1
 fi
 sudo=
 if [ "$(id -u)" -ne 0 ]; then
-  command -v sudo >/dev/null || { echo "setup.sh: error: packages are missing and this is not root: run as root: apt-get install ${missing[*]}" >&2; exit 1; }
+  command -v sudo >/dev/null || { echo "setup.sh: error: packages are missing and this is not root: run it as root" >&2; exit 1; }
   sudo=sudo
 fi
-echo "installing ${#missing[@]} packages: ${missing[*]}"
+echo "installing $((${#missing[@]} + ${#missing_aside[@]})) packages: ${missing[*]} ${missing_aside[*]}"
 export DEBIAN_FRONTEND=noninteractive
 $sudo apt-get update -q
-$sudo apt-get install -y -q --no-install-recommends "${missing[@]}"
+[ ${#missing[@]} -eq 0 ] || $sudo apt-get install -y -q --no-install-recommends "${missing[@]}"
+if [ ${#missing_aside[@]} -gt 0 ]; then
+  folder=$(mktemp -d)
+  trap 'rm -rf "$folder"' EXIT
+  (cd "$folder" && apt-get download -q -o APT::Sandbox::User=root "${missing_aside[@]}")
+  $sudo mkdir -p "$unpacked"
+  for package in "${missing_aside[@]}"; do
+    $sudo dpkg -x "$folder/$package"_*.deb "$unpacked"
+    $sudo touch "$unpacked/$package"
+  done
+fi
