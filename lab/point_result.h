@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace atlaswire::lab {
@@ -37,6 +38,8 @@ struct PointResult {
   std::vector<Figure> figures;   ///< same names in the same order for every method; NaN: not applicable
   std::vector<Figure> timings;   ///< milliseconds of wall clock
   std::vector<FrameRow> frames;  ///< in order of time
+  /// Provenance that only the point knows, such as {"device", "llvmpipe (LLVM 15.0.6), Mesa 22.3.6"}.
+  std::vector<std::pair<std::string, std::string>> facts;
 };
 
 /// Where a point writes and whom it tells. All members may be left as they are.
