@@ -22,6 +22,7 @@ nlohmann::ordered_json way_json(const RelayStats::Way& way) {
           {"duplicates", way.duplicates},
           {"corrupted", way.corrupted},
           {"reordered", way.reordered},
+          {"marked", way.marked},
           {"send_failures", way.send_failures}};
 }
 
@@ -51,6 +52,7 @@ void RelayStats::count(const Decision& decision, Direction direction) {
   w.octets_by_fate[index_of(decision.fate)] += decision.size;
   w.corrupted += decision.corrupted ? 1 : 0;
   w.reordered += decision.reordered ? 1 : 0;
+  w.marked += decision.marked ? 1 : 0;
 }
 
 std::string stats_json(const RelayStats& stats, const std::string& profile, std::uint64_t seed,

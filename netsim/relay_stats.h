@@ -19,6 +19,7 @@ struct RelayStats {
     std::uint64_t duplicates = 0;
     std::uint64_t corrupted = 0;
     std::uint64_t reordered = 0;
+    std::uint64_t marked = 0;         ///< congestion experienced
     std::uint64_t send_failures = 0;  ///< delivered by the model, refused by the machine's own sockets
   };
   std::array<Way, 2> ways;

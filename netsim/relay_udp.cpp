@@ -1,29 +1,17 @@
 #include "netsim/relay_udp.h"
 
-#include <boost/asio/buffer.hpp>
-
 namespace atlaswire::netsim {
 
 namespace {
 
 constexpr std::size_t kMostDatagram = 65'536;
-constexpr int kSocketBuffer = 4 * 1024 * 1024;
 /// Datagrams taken from one socket before others, and deliveries, get their turn.
 constexpr int kBatch = 32;
-
-void prepare(udp::socket& socket) {
-  boost::system::error_code ignored;  // smaller buffers only lose earlier
-  socket.set_option(asio::socket_base::receive_buffer_size(kSocketBuffer), ignored);
-  socket.set_option(asio::socket_base::send_buffer_size(kSocketBuffer), ignored);
-  socket.non_blocking(true);
-}
 
 }  // namespace
 
 RelayUdp::RelayUdp(asio::io_context& io, udp::socket listener, const udp::endpoint& target)
-    : io_(io), listener_(std::move(listener)), target_(target), buffer_(kMostDatagram) {
-  prepare(listener_);
-}
+    : io_(io), listener_(std::move(listener)), target_(target), buffer_(kMostDatagram) {}
 
 void RelayUdp::start(RelayContext& context) {
   context_ = &context;
@@ -31,7 +19,7 @@ void RelayUdp::start(RelayContext& context) {
 }
 
 void RelayUdp::wait_for_clients() {
-  listener_.async_wait(udp::socket::wait_read, [this](const boost::system::error_code& e) {
+  listener_.socket().async_wait(udp::socket::wait_read, [this](const boost::system::error_code& e) {
     if (e) return;
     receive_from_clients();
     wait_for_clients();
@@ -39,9 +27,10 @@ void RelayUdp::wait_for_clients() {
 }
 
 void RelayUdp::wait_for_target(Flow& flow) {
-  flow.upstream.async_wait(udp::socket::wait_read, [this, id = flow.id](const boost::system::error_code& e) {
-    if (!e) receive_from_target(id);
-  });
+  flow.upstream.socket().async_wait(udp::socket::wait_read,
+                                    [this, id = flow.id](const boost::system::error_code& e) {
+                                      if (!e) receive_from_target(id);
+                                    });
 }
 
 RelayUdp::Flow* RelayUdp::flow_of(const udp::endpoint& client) {
@@ -57,27 +46,32 @@ RelayUdp::Flow* RelayUdp::flow_of(const udp::endpoint& client) {
     ++context_->stats.connect_failures;
     return nullptr;
   }
-  prepare(upstream);
   ++context_->stats.udp_flows;
   by_client_[client] = *id;
-  Flow& flow = flows_.emplace(*id, Flow{*id, client, std::move(upstream), {}}).first->second;
+  Flow& flow = flows_.emplace(*id, Flow{*id, client, EcnSocket(std::move(upstream)), {}}).first->second;
   wait_for_target(flow);
   return &flow;
+}
+
+/// What is in the buffer, now.
+void RelayUdp::enter(Flow& flow, Direction direction, std::size_t size, Ecn ecn) {
+  const Time now = context_->now();
+  flow.last_used = now;
+  const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(size);
+  context_->emulator.datagram(flow.id, direction, ByteBuffer(buffer_.begin(), end), now, ecn);
 }
 
 void RelayUdp::receive_from_clients() {
   for (int i = 0; i < kBatch; ++i) {
     udp::endpoint from;
+    Ecn ecn{};
     boost::system::error_code e;
-    const std::size_t size = listener_.receive_from(asio::buffer(buffer_), from, 0, e);
+    const std::size_t size = listener_.receive(buffer_, from, ecn, e);
     if (e == asio::error::would_block) return;
     if (e) continue;  // an ICMP error of an earlier send
     Flow* flow = flow_of(from);
     if (!flow) continue;
-    const Time now = context_->now();
-    flow->last_used = now;
-    const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(size);
-    context_->emulator.datagram(flow->id, Direction::kUp, ByteBuffer(buffer_.begin(), end), now);
+    enter(*flow, Direction::kUp, size, ecn);
   }
 }
 
@@ -86,14 +80,13 @@ void RelayUdp::receive_from_target(FlowId id) {
   if (found == flows_.end()) return;
   Flow& flow = found->second;
   for (int i = 0; i < kBatch; ++i) {
+    udp::endpoint from;
+    Ecn ecn{};
     boost::system::error_code e;
-    const std::size_t size = flow.upstream.receive(asio::buffer(buffer_), 0, e);
+    const std::size_t size = flow.upstream.receive(buffer_, from, ecn, e);
     if (e == asio::error::would_block) break;
     if (e) continue;  // such as "connection refused": nobody listens yet
-    const Time now = context_->now();
-    flow.last_used = now;
-    const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(size);
-    context_->emulator.datagram(id, Direction::kDown, ByteBuffer(buffer_.begin(), end), now);
+    enter(flow, Direction::kDown, size, ecn);
   }
   wait_for_target(flow);
 }
@@ -103,13 +96,12 @@ void RelayUdp::deliver(const Delivery& delivery) {
   if (found == flows_.end()) return;
   Flow& flow = found->second;
   boost::system::error_code e;
-  const auto octets = asio::buffer(delivery.octets.data(), delivery.octets.size());
   if (delivery.direction == Direction::kUp) {
-    flow.upstream.send(octets, 0, e);
+    flow.upstream.send(delivery.octets, target_, delivery.ecn, e);
     // That was about an earlier datagram, which nobody was there to take; this one has not been sent.
-    if (e == asio::error::connection_refused) flow.upstream.send(octets, 0, e);
+    if (e == asio::error::connection_refused) flow.upstream.send(delivery.octets, target_, delivery.ecn, e);
   } else {
-    listener_.send_to(octets, flow.client, 0, e);
+    listener_.send(delivery.octets, flow.client, delivery.ecn, e);
   }
   context_->stats.lateness.add(delivery.arrival, steady_now());
   if (e) ++context_->stats.way(delivery.direction).send_failures;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "netsim/ecn_socket.h"
 #include "netsim/relay_context.h"
 
 #include <map>
@@ -7,7 +8,8 @@
 
 namespace atlaswire::netsim {
 
-/// The relay's UDP half: one flow a client endpoint, each with a socket of its own towards the target.
+/// The relay's UDP half: one flow a client endpoint, each with a socket of its own towards the target. ECN
+/// bits pass through, or come out as the model marks them.
 class RelayUdp {
  public:
   RelayUdp(asio::io_context& io, udp::socket listener, const udp::endpoint& target);
@@ -22,10 +24,11 @@ class RelayUdp {
   struct Flow {
     FlowId id{};
     udp::endpoint client;
-    udp::socket upstream;
+    EcnSocket upstream;
     Time last_used{};
   };
   Flow* flow_of(const udp::endpoint& client);
+  void enter(Flow& flow, Direction direction, std::size_t size, Ecn ecn);
   void receive_from_clients();
   void receive_from_target(FlowId id);
   void wait_for_clients();
@@ -33,7 +36,7 @@ class RelayUdp {
 
   asio::io_context& io_;
   RelayContext* context_ = nullptr;
-  udp::socket listener_;
+  EcnSocket listener_;
   udp::endpoint target_;
   std::map<FlowId, Flow> flows_;
   std::map<udp::endpoint, FlowId> by_client_;

@@ -29,7 +29,10 @@ LoopbackSocket::LoopbackSocket(Kind kind)
     : fd_(::socket(AF_INET, (kind == Kind::kUdp ? SOCK_DGRAM : SOCK_STREAM) | SOCK_CLOEXEC, 0)) {
   limit_waiting(std::chrono::seconds(20));
   const int large = 4 << 20;
-  if (kind == Kind::kUdp) setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &large, sizeof large);
+  const int yes = 1;
+  if (kind == Kind::kTcp) return;
+  setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &large, sizeof large);
+  setsockopt(fd_, IPPROTO_IP, IP_RECVTOS, &yes, sizeof yes);
 }
 
 LoopbackSocket::~LoopbackSocket() {
@@ -67,6 +70,28 @@ std::optional<ByteBuffer> LoopbackSocket::receive() const {
   return buffer;
 }
 
+void LoopbackSocket::send_with_ecn(int bits) const {
+  setsockopt(fd_, IPPROTO_IP, IP_TOS, &bits, sizeof bits);
+}
+
+std::optional<LoopbackSocket::Received> LoopbackSocket::receive_with_ecn() const {
+  Received r{ByteBuffer(65'536), 0, {}};
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+  iovec part{r.octets.data(), r.octets.size()};
+  msghdr message{};
+  message.msg_name = &r.from;
+  message.msg_namelen = sizeof r.from;
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  const ssize_t size = ::recvmsg(fd_, &message, 0);
+  if (size < 0) return std::nullopt;
+  r.octets.resize(static_cast<std::size_t>(size));
+  if (cmsghdr* first = CMSG_FIRSTHDR(&message)) r.ecn = *CMSG_DATA(first) & 3;
+  return r;
+}
+
 void LoopbackSocket::limit_waiting(std::chrono::milliseconds limit) const {
   const timeval time{.tv_sec = limit.count() / 1000, .tv_usec = limit.count() % 1000 * 1000};
   setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &time, sizeof time);
@@ -96,13 +121,12 @@ EchoServer::~EchoServer() {
 }
 
 void EchoServer::echo_datagrams() {
-  ByteBuffer buffer(65'536);
   while (!stopping_) {
-    sockaddr_in from{};
-    socklen_t size = sizeof from;
-    auto* address = reinterpret_cast<sockaddr*>(&from);
-    const ssize_t got = ::recvfrom(udp_.fd(), buffer.data(), buffer.size(), 0, address, &size);
-    if (got >= 0) ::sendto(udp_.fd(), buffer.data(), static_cast<std::size_t>(got), 0, address, size);
+    const auto got = udp_.receive_with_ecn();
+    if (!got) continue;
+    udp_.send_with_ecn(got->ecn);
+    const auto* to = reinterpret_cast<const sockaddr*>(&got->from);
+    ::sendto(udp_.fd(), got->octets.data(), got->octets.size(), 0, to, sizeof got->from);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/bytes.h"
 
+#include <netinet/in.h>
 #include <sys/types.h>
 
 #include <atomic>
@@ -30,6 +31,15 @@ class LoopbackSocket {
   bool send(ByteView octets) const;
   /// One datagram, or what a stream has; empty: end. nullopt: nothing within the limit, or an error (errno).
   std::optional<ByteBuffer> receive() const;
+  /// What it sends from now on has these ECN bits, 0..3.
+  void send_with_ecn(int bits) const;
+  struct Received {
+    ByteBuffer octets;
+    int ecn = 0;
+    sockaddr_in from{};
+  };
+  /// One datagram, its ECN bits and its sender.
+  [[nodiscard]] std::optional<Received> receive_with_ecn() const;
   void limit_waiting(std::chrono::milliseconds limit) const;
   void end_sending() const;
   void reset();
@@ -38,7 +48,7 @@ class LoopbackSocket {
   int fd_;
 };
 
-/// Echoes datagrams and streams of one port on threads of its own until it ends.
+/// Echoes datagrams, ECN bits included, and streams of one port on threads of its own until it ends.
 class EchoServer {
  public:
   EchoServer();

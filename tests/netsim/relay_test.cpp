@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -152,12 +153,22 @@ TEST(Relay, ResetsTravelBothWays) {
   EXPECT_EQ(nowhere.stop().connect_failures, 1U);
 }
 
-TEST(Relay, ALiveLogReplaysIdenticallyInVirtualTime) {
+std::vector<DirectedDecision> log_of(const std::string& name) {
+  std::ifstream file(name);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto log = parse_decision_log(text);
+  EXPECT_TRUE(log.has_value()) << log.error().message();
+  return log.has_value() ? *log : std::vector<DirectedDecision>{};
+}
+
+/// Datagrams and a stream at once.
+void run_live_and_replay(const Profile& profile) {
   const std::string log_file = temporary("log.csv");
   const std::string pcapng_file = temporary("log.pcapng");
   EchoServer echo;
   {
     RunningRelay relay("lossy-wifi", echo.port(), [&](RelaySettings& s) {
+      s.profile = profile;
       s.seed = 77;
       s.log_file = log_file;
       s.pcapng_file = pcapng_file;
@@ -182,14 +193,63 @@ TEST(Relay, ALiveLogReplaysIdenticallyInVirtualTime) {
     EXPECT_GT(echoed, 0U);
     EXPECT_GT(streamed, 0U);
   }
-  std::ifstream file(log_file);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const auto log = parse_decision_log(text);
-  ASSERT_TRUE(log.has_value()) << log.error().message();
-  EXPECT_GT(log->size(), 900U);
-  EXPECT_TRUE(replay(*log, *load_profile("lossy-wifi"), 77) == *log);
-  EXPECT_FALSE(replay(*log, *load_profile("lossy-wifi"), 78) == *log);
-  EXPECT_GT(std::filesystem::file_size(pcapng_file), log->size() * 100);
+  const auto log = log_of(log_file);
+  EXPECT_GT(log.size(), 900U);
+  EXPECT_EQ(std::any_of(log.begin(), log.end(), [](const auto& d) { return d.path == PathId{1}; }),
+            profile.paths() > 1);
+  EXPECT_TRUE(replay(log, profile, 77) == log);
+  EXPECT_FALSE(replay(log, profile, 78) == log);
+  EXPECT_GT(std::filesystem::file_size(pcapng_file), log.size() * 100);
+}
+
+TEST(Relay, ALiveLogReplaysIdenticallyInVirtualTime) { run_live_and_replay(*load_profile("lossy-wifi")); }
+
+TEST(Relay, ALiveLogReplaysWhereStreamsHaveAPathOfTheirOwn) {
+  const std::string text(shipped_profile_text("lossy-wifi"));
+  run_live_and_replay(*parse_profile(text + "[[flow]]\nkind = \"stream\"\n", "apart", "."));
+}
+
+TEST(Relay, EcnBitsTravelBothWays) {
+  EchoServer echo;
+  RunningRelay relay("lan", echo.port());
+  const LoopbackSocket client(Kind::kUdp);
+  ASSERT_TRUE(client.connect(relay.port()));
+  for (int bits = 0; bits < 4; ++bits) {
+    client.send_with_ecn(bits);
+    ASSERT_TRUE(client.send(ByteBuffer(10)));
+    const auto answer = client.receive_with_ecn();
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(answer->ecn, bits);
+  }
+}
+
+TEST(Relay, AQueueThatMarksDropsNothingThatCanBeMarked) {
+  const std::string log_file = temporary("marks.csv");
+  const Profile profile = *parse_profile(
+      "[up]\nrate = { mbps = 8 }\n"
+      "queue = { policy = \"codel\", limit_kb = 1024, target_ms = 1, interval_ms = 10, ecn = true }\n",
+      "marks", ".");
+  EchoServer echo;
+  RunningRelay relay("lan", echo.port(), [&](RelaySettings& s) {
+    s.profile = profile;
+    s.log_file = log_file;
+  });
+  const LoopbackSocket client(Kind::kUdp);
+  ASSERT_TRUE(client.connect(relay.port()));
+  constexpr int kPackets = 200;  // at once: a queue of 200 ms
+  client.send_with_ecn(2);
+  for (int i = 0; i < kPackets; ++i) ASSERT_TRUE(client.send(ByteBuffer(972)));
+  int seen[4] = {};
+  for (int i = 0; i < kPackets; ++i) {
+    const auto answer = client.receive_with_ecn();
+    ASSERT_TRUE(answer.has_value()) << i;
+    ++seen[answer->ecn];
+  }
+  EXPECT_GT(seen[3], 0) << "congestion experienced";
+  EXPECT_EQ(seen[2] + seen[3], kPackets);
+  EXPECT_EQ(relay.stop().way(Direction::kUp).marked, static_cast<std::uint64_t>(seen[3]));
+  const auto log = log_of(log_file);
+  EXPECT_TRUE(replay(log, profile, 1) == log);
 }
 
 TEST(Relay, LosesWhatTheProfileLoses) {
