@@ -1,9 +1,9 @@
 #version 460
-// RGBA to I420, BT.709 full range: one invocation makes 8 x 2 pixels, so that it writes whole words. With
-// coverage a second luma plane follows below the first (render/method.h).
+// RGBA to I420, BT.709 full range: one invocation makes 8 x 2 pixels, so that it writes whole words. A second luma
+// plane may follow below the first (render/passes/i420_pass.h).
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool kCoverage = false;
+layout(constant_id = 0) const uint kLowerHalf = 0u;  // I420Pass::LowerHalf: none, coverage, from the host
 
 layout(push_constant) uniform Picture {
   uint width;   // of the colours, a multiple of 8
@@ -18,7 +18,7 @@ const vec3 kLuma = vec3(0.2126, 0.7152, 0.0722);
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy) * ivec2(8, 2);
   if (at.x >= int(picture.width) || at.y >= int(picture.height)) return;
-  uint total_height = kCoverage ? 2u * picture.height : picture.height;
+  uint total_height = kLowerHalf == 0u ? picture.height : 2u * picture.height;
   uint luma_word = (uint(at.y) * picture.width + uint(at.x)) / 4u;
   uint row_words = picture.width / 4u;
   uint coverage_word = luma_word + row_words * picture.height;
@@ -32,7 +32,7 @@ void main() {
       vec4 y = vec4(dot(p[row * 4].rgb, kLuma), dot(p[row * 4 + 1].rgb, kLuma), dot(p[row * 4 + 2].rgb, kLuma),
                     dot(p[row * 4 + 3].rgb, kLuma));
       words[luma_word + uint(row) * row_words + uint(half_block)] = packUnorm4x8(y);
-      if (kCoverage) {
+      if (kLowerHalf == 1u) {
         words[coverage_word + uint(row) * row_words + uint(half_block)] =
             packUnorm4x8(vec4(p[row * 4].a, p[row * 4 + 1].a, p[row * 4 + 2].a, p[row * 4 + 3].a));
       }

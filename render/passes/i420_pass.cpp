@@ -1,5 +1,6 @@
 #include "render/passes/i420_pass.h"
 
+#include "base/assert.h"
 #include "base/program.h"
 #include "render/gpu/barriers.h"
 #include "shaders/shaders.h"
@@ -32,7 +33,7 @@ std::vector<Buffer> make_planes(const Device& device, Extent2D picture, std::uin
                                                .size = picture.area() * 3 / 2,
                                                .usage = vk::BufferUsageFlagBits::eStorageBuffer,
                                                .residence = Residence::kReadback});
-    // The coverage plane's chroma stays neutral for good.
+    // The lower half's chroma stays neutral for good.
     std::ranges::fill(planes.back().mapped(), std::byte{128});
     planes.back().flush();
   }
@@ -41,9 +42,9 @@ std::vector<Buffer> make_planes(const Device& device, Extent2D picture, std::uin
 
 }  // namespace
 
-I420Pass::I420Pass(const Device& device, const Image& source, bool coverage, std::uint32_t slots)
+I420Pass::I420Pass(const Device& device, const Image& source, LowerHalf lower, std::uint32_t slots)
     : colors_(checked(source.extent())),
-      coverage_(coverage),
+      lower_(lower),
       sampler_(make_sampler(device, {.name = "I420 source", .filter = vk::Filter::eNearest})),
       layout_(device, "I420",
               {{0, vk::DescriptorType::eCombinedImageSampler}, {1, vk::DescriptorType::eStorageBuffer}}),
@@ -51,7 +52,7 @@ I420Pass::I420Pass(const Device& device, const Image& source, bool coverage, std
                                         .shader = shaders::i420_comp,
                                         .layouts = {layout_.handle()},
                                         .push_constant_bytes = sizeof(PictureConstants),
-                                        .specialization = {{0, coverage ? 1U : 0U}}}),
+                                        .specialization = {{0, static_cast<std::uint32_t>(lower)}}}),
       planes_(make_planes(device, picture_extent(), slots)),
       sets_(device, "I420", layout_, slots) {
   for (std::uint32_t i = 0; i < slots; ++i) {
@@ -75,8 +76,13 @@ I420Picture I420Pass::picture(std::uint32_t slot) const {
   return {.extent = extent, .y = y, .u = u, .v = u + extent.area() / 4};
 }
 
+std::span<std::uint8_t> I420Pass::lower_luma(std::uint32_t slot) const {
+  AW_ASSERT(lower_ == LowerHalf::kFromHost);
+  return planes_[slot].mapped<std::uint8_t>().subspan(colors_.area(), colors_.area());
+}
+
 Extent2D I420Pass::picture_extent() const {
-  return {colors_.width, coverage_ ? colors_.height * 2 : colors_.height};
+  return {colors_.width, lower_ == LowerHalf::kNone ? colors_.height : colors_.height * 2};
 }
 
 }  // namespace atlaswire::render

@@ -78,7 +78,9 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
       freed_(settings_.atlas, settings_.allocator.min_block_log2,
              static_cast<std::uint32_t>(scene_->patches.size())),
       shading_(device, scene_gpu_, settings_.atlas, settings_.frames_in_flight),
-      conversion_(device, shading_.atlas(), scene_->requirements.alpha(), settings_.frames_in_flight),
+      conversion_(device, shading_.atlas(),
+                  scene_->requirements.alpha() ? I420Pass::LowerHalf::kCoverage : I420Pass::LowerHalf::kNone,
+                  settings_.frames_in_flight),
       timer_(device, "sas timer", 2),
       context_(device, "sas"),
       chunk_of_patch_(chunks_of_patches(*scene_)) {}

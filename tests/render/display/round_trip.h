@@ -22,7 +22,8 @@ class RoundTrip {
         gpu_(device, scene_),
         shading_(device, gpu_, atlas, 2),
         forward_(device, gpu_),
-        i420_(device, shading_.atlas(), scene_->requirements.alpha(), 2),
+        i420_(device, shading_.atlas(),
+              scene_->requirements.alpha() ? I420Pass::LowerHalf::kCoverage : I420Pass::LowerHalf::kNone, 2),
         texture_(device, atlas, scene_->requirements.alpha()),
         mesh_(device),
         display_(device, texture_, display_color(scene_->background, scene_->exposure)) {}

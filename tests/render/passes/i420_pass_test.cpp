@@ -71,7 +71,7 @@ Means chroma_of(const Picture& p, std::uint32_t x, std::uint32_t y) {
 TEST_F(I420PassTest, MatchesBt709FullRangeForNoise) {
   const Picture source = noise({72, 22}, 1);
   const Image image = image_of(source);
-  const I420Pass pass(device(), image, false, 2);
+  const I420Pass pass(device(), image, I420Pass::LowerHalf::kNone, 2);
   convert(pass, 1);
   const I420Picture picture = pass.picture(1);
   ASSERT_EQ(picture.extent, (Extent2D{72, 22}));
@@ -92,7 +92,7 @@ TEST_F(I420PassTest, MatchesBt709FullRangeForNoise) {
 TEST_F(I420PassTest, PutsCoverageBelowTheColoursWithNeutralChroma) {
   const Picture source = noise({64, 16}, 2);
   const Image image = image_of(source);
-  const I420Pass pass(device(), image, true, 1);
+  const I420Pass pass(device(), image, I420Pass::LowerHalf::kCoverage, 1);
   convert(pass, 0);
   const I420Picture picture = pass.picture(0);
   ASSERT_EQ(picture.extent, (Extent2D{64, 32}));
@@ -111,7 +111,7 @@ TEST_F(I420PassTest, PutsCoverageBelowTheColoursWithNeutralChroma) {
 
 TEST_F(I420PassTest, RefusesSidesThatDoNotPack) {
   const Image image = image_of(noise({60, 16}, 3));
-  EXPECT_THROW((I420Pass{device(), image, false, 1}), ProgramError);
+  EXPECT_THROW((I420Pass{device(), image, I420Pass::LowerHalf::kNone, 1}), ProgramError);
 }
 
 }  // namespace
