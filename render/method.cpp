@@ -2,6 +2,7 @@
 
 #include "base/program.h"
 #include "render/sas/sas_method.h"
+#include "render/video/video_method.h"
 
 #include <array>
 
@@ -15,14 +16,14 @@ struct Registration {
   Maker make;
 };
 
+template <class Kind>
+std::unique_ptr<Method> make(Device& device, std::shared_ptr<const Scene> scene,
+                             const MethodSettings& settings) {
+  return std::make_unique<Kind>(device, std::move(scene), settings);
+}
+
 /// One line a method.
-const std::array kMethods{
-    Registration{"sas",
-                 [](Device& device, std::shared_ptr<const Scene> scene,
-                    const MethodSettings& settings) -> std::unique_ptr<Method> {
-                   return std::make_unique<SasMethod>(device, std::move(scene), settings);
-                 }},
-};
+const std::array kMethods{Registration{"sas", make<SasMethod>}, Registration{"video", make<VideoMethod>}};
 
 }  // namespace
 

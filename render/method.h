@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,11 +54,22 @@ struct I420Picture {
   const std::uint8_t* v = nullptr;
 };
 
-/// What a method gives for one frame: a picture to encode and the change that goes with it.
+/// An ordinary view of the scene: what "video" draws instead of an atlas.
+struct RenderedView {
+  Camera camera;       ///< as drawn: even sides; its extent is that of the picture's colours
+  double nearest = 0;  ///< metres along the view axis: nothing drawn is nearer; infinity: nothing was drawn
+  /// Distances along the view axis in metres, rows from the top, infinity where nothing was drawn; blended
+  /// surfaces have none. Only with VideoDepth::kFree; borrowed as the picture is.
+  std::span<const float> depth;
+};
+
+/// What a method gives for one frame: a picture to encode, and what the picture is of: the change of an
+/// atlas's layout, or an ordinary view.
 struct RenderedFrame {
   FrameId frame{};
   I420Picture picture;
-  const LayoutChange* change = nullptr;  ///< valid until the next render
+  const LayoutChange* change = nullptr;  ///< valid until the next render; null: the method has no atlas
+  std::optional<RenderedView> view;      ///< nullopt: the method has an atlas
   AtlasUsage usage;
   std::uint32_t visible_patches = 0;
   std::uint64_t shaded_texels = 0;
@@ -65,7 +77,20 @@ struct RenderedFrame {
   RenderTimings timings;
 };
 
-/// Settings of all methods; each states its trade.
+/// How the depth of an ordinary view reaches the client.
+enum class VideoDepth : std::uint8_t {
+  kNone,   ///< not at all: asynchronous time warp needs none
+  kFree,   ///< exact and beside the picture, at no cost in bytes ([SAS] 5.6 to 5.8 count none)
+  kCoded,  ///< below the colours in the picture's luma, 8 bits a pixel (render/video/depth_plane.h)
+};
+
+/// Settings of "video" alone.
+struct VideoSettings {
+  Extent2D display{960, 540};  ///< what every request's camera has; even sides
+  VideoDepth depth = VideoDepth::kNone;
+};
+
+/// Settings of all methods; each states its trade. "video" reads `fov_scale`, `frames_in_flight` and `video`.
 struct MethodSettings {
   Extent2D atlas{1024, 1024};  ///< colour texels; quality against bytes and shading time
   double fov_scale = 1.2;      ///< >= 1; room for rotation against larger visible sets
@@ -76,19 +101,20 @@ struct MethodSettings {
   std::uint32_t reshade_interval = 1;  ///< each block is shaded at least every n-th frame; new ones at once
   std::uint32_t frames_in_flight = 3;
   AllocatorSettings allocator;  ///< its atlas member follows `atlas`
+  VideoSettings video;
 };
 
-/// A way to turn views into frames for the encoder: `sas` today. One thread at a time.
+/// A way to turn views into frames for the encoder: "sas", or "video" to compare with. One thread at a time.
 class Method {
  public:
   virtual ~Method() = default;
   /// Picture size that the encoder will get: the atlas, and the coverage plane below it where the scene
-  /// has alpha (luma 0..255 = coverage, chroma 128).
+  /// has alpha (luma 0..255 = coverage, chroma 128); or the view, and its depth plane where that is coded.
   [[nodiscard]] virtual Extent2D picture_extent() const = 0;
   virtual RenderedFrame render(const FrameRequest& request) = 0;
   /// The atlas's memory wants an early I-frame.
   [[nodiscard]] virtual bool wants_intra() const = 0;
-  /// Every live patch, ascending: what a new client must be told.
+  /// Every live patch, ascending: what a new client must be told. Empty without an atlas.
   [[nodiscard]] virtual std::vector<PlacedPatch> blocks() const = 0;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/units.h"
+#include "render/display/i420_planes.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/descriptors.h"
 #include "render/gpu/pipeline.h"
@@ -11,17 +12,6 @@
 #include <vector>
 
 namespace atlaswire::render {
-
-/// Borrowed planes of a decoded picture, BT.709 full range; strides in octets. With coverage the luma of the
-/// lower half is the coverage of the upper half (render/method.h).
-struct I420Planes {
-  Extent2D extent;
-  const std::uint8_t* y = nullptr;
-  const std::uint8_t* u = nullptr;
-  const std::uint8_t* v = nullptr;
-  std::uint32_t y_stride = 0;
-  std::uint32_t uv_stride = 0;
-};
 
 /// The client's atlas: decoded pictures as RGBA8 images in a ring, so that one is drawn while the next ones
 /// arrive. One thread uploads; any may draw.
