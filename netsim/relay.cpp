@@ -87,7 +87,7 @@ struct Relay::Impl {
     next_housekeeping = start + kHousekeeping;
     last_line = start;
     while (!stopped) {
-      io.poll();
+      serve_sockets();
       const Time now = context->now();
       pump(now);
       if (settings.duration > Duration::zero() && now - start >= settings.duration) break;
@@ -98,6 +98,14 @@ struct Relay::Impl {
     keep_decisions();
     context->stats.stream_repeats = context->emulator.stream_repeats();
     context->recorder.close();
+  }
+
+  /// Sockets that are ready get their turn, until something is due: a flood would keep them ready for ever.
+  void serve_sockets() {
+    while (!stopped && io.poll_one() > 0) {
+      const auto due = context->emulator.next_event();
+      if (due && *due <= context->now()) return;
+    }
   }
 
   void keep_decisions() {

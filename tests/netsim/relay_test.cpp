@@ -252,6 +252,20 @@ TEST(Relay, AQueueThatMarksDropsNothingThatCanBeMarked) {
   EXPECT_TRUE(replay(log, profile, 1) == log);
 }
 
+TEST(Relay, AFloodDoesNotHoldUpWhatIsDue) {
+  const LoopbackSocket sink(Kind::kUdp);
+  RunningRelay relay("paper-sas-20", sink.bind_and_listen(Kind::kUdp));
+  const LoopbackSocket client(Kind::kUdp);
+  ASSERT_TRUE(client.connect(relay.port()));
+  const Duration flood = std::chrono::seconds(1);
+  const Time end = steady_now() + flood;
+  const ByteBuffer octets(100);
+  while (steady_now() < end) ASSERT_TRUE(client.send(octets));
+  const RelayStats& stats = relay.stop();
+  EXPECT_GT(stats.lateness.count(), 1000U);
+  EXPECT_LT(stats.lateness.most_us(), to_ms(flood) * 1e3 / 2) << "nothing left before the flood was over";
+}
+
 TEST(Relay, LosesWhatTheProfileLoses) {
   EchoServer echo;
   RunningRelay relay("paper-sas-0", echo.port(), [](RelaySettings& s) {
