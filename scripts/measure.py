@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
-"""Measures atlasd and atlas-client for docs/EXPERIMENTS.md and prints Markdown tables.
+"""Measures atlasd and atlas-client for docs/EXPERIMENTS.md, atlas-netsim for docs/NETSIM.md; prints Markdown tables.
 
   scripts/measure.py rates  [--scene atrium] [--seconds 12]       server rate and stages for three atlas sizes
   scripts/measure.py scenes FOLDER [--seconds 12]                 picture at zero latency for each FILE.glb there
+  scripts/measure.py relay  [--seconds 3] [--runs 5]               what atlas-netsim carries on one core, and its accuracy
 
 Needs build/release; loopback only; each run ends by itself."""
 
 import argparse
 import csv
 import json
+import os
 import pathlib
 import shlex
 import signal
+import socket
 import statistics
 import subprocess
 import sys
@@ -81,6 +84,70 @@ def scenes(arguments):
               f"{100 * s['coverage']:.2f} | {s['video']['mbps']:.1f} | {s['meta']['mbps']:.2f} |", flush=True)
 
 
+class Relay:
+    """atlas-netsim on CPU 0 for as long as the block lasts; then `summary` and `cpu_seconds` say what it did."""
+
+    def __init__(self, arguments, target, spin):
+        self.folder = tempfile.TemporaryDirectory()
+        ready = pathlib.Path(self.folder.name) / "ready.json"
+        self.process = subprocess.Popen([arguments.netsim, "--listen", "0", "--to", f"127.0.0.1:{target}", "--profile", arguments.profile,
+                                         "--spin", str(spin), "--json", "--ready-file", str(ready), "--duration", "600"],
+                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        os.sched_setaffinity(self.process.pid, {0})
+        while not ready.exists():
+            if self.process.poll() is not None:
+                sys.exit("atlas-netsim did not start")
+            time.sleep(0.01)
+        self.port = json.loads(ready.read_text())["port"]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGTERM)
+        self.summary = json.loads(self.process.stdout.read())
+        _, self.process.returncode, usage = os.wait4(self.process.pid, 0)
+        self.process.stdout.close()
+        self.cpu_seconds = usage.ru_utime + usage.ru_stime
+        self.folder.cleanup()
+
+
+def through_relay(arguments, spin, gap):
+    """Datagrams through a relay into a socket that nobody reads, `gap` seconds apart (0: a flood): (the relay, sent)."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sink, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as source:
+        sink.bind(("127.0.0.1", 0))
+        with Relay(arguments, sink.getsockname()[1], spin) as relay:
+            source.connect(("127.0.0.1", relay.port))
+            payload, sent, start = bytes(arguments.octets), 0, time.monotonic()
+            while (now := time.monotonic() - start) < arguments.seconds:
+                if gap and sent * gap > now:
+                    time.sleep(sent * gap - now)
+                source.send(payload)
+                sent += 1
+            time.sleep(0.3)  # what is on its way
+    return relay, sent
+
+
+def relay(arguments):
+    if os.cpu_count() < 2:
+        sys.exit("measure.py: error: needs two cores: one for the relay, one for the load")
+    os.sched_setaffinity(0, {1})
+    print(f"load {os.getloadavg()[0]:.2f}; {arguments.octets} octets through {arguments.profile}; median (least, most) of {arguments.runs}\n")
+
+    def cells(*columns):
+        return " | ".join(f"{statistics.median(c):,.0f} ({min(c):,.0f}, {max(c):,.0f})" for c in columns)
+
+    floods = [through_relay(arguments, 0, 0) for _ in range(arguments.runs)]
+    went = [r.summary["lateness_us"]["count"] - r.summary["up"]["send_failures"] for r, _ in floods]
+    print("| offered, packets/s | relayed, packets/s | per CPU second of the relay |\n|---|---|---|")
+    print("| " + cells([sent / arguments.seconds for _, sent in floods], [n / arguments.seconds for n in went],
+                       [n / r.cpu_seconds for n, (r, _) in zip(went, floods)]) + " |\n", flush=True)
+    print(f"| {arguments.rate} packets/s | late by, median us | 99th percentile us | most us |\n|---|---|---|---|")
+    for spin in (0, 100):
+        late = [through_relay(arguments, spin, 1 / arguments.rate)[0].summary["lateness_us"] for _ in range(arguments.runs)]
+        print(f"| --spin {spin} | " + cells(*([x[key] for x in late] for key in ("median", "p99", "max"))) + " |", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = parser.add_subparsers(dest="kind", required=True)
@@ -92,6 +159,14 @@ def main():
     two.add_argument("--atlas", default="2048x2048")
     two.add_argument("--bitrate", default="40M")
     two.set_defaults(run=scenes)
+    three = kinds.add_parser("relay", help="what atlas-netsim carries on one core, and its accuracy")
+    three.add_argument("--seconds", type=float, default=3)
+    three.add_argument("--runs", type=int, default=5)
+    three.add_argument("--profile", default="paper-sas-20")
+    three.add_argument("--octets", type=int, default=1200)
+    three.add_argument("--rate", type=int, default=2000, help="packets/s at which lateness is measured")
+    three.add_argument("--netsim", default=str(BIN / "atlas-netsim"), help="the program")
+    three.set_defaults(run=relay)
     for kind in (one, two):
         kind.add_argument("--seconds", type=float, default=12)
         kind.add_argument("--daemon", type=shlex.split, default=[], help="further options of atlasd, in one string")
