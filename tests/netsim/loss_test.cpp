@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace atlaswire::netsim {
@@ -32,6 +34,27 @@ Runs observe(const LossModel& model, std::uint64_t seed) {
   return out;
 }
 
+/// Standard deviation of the share lost among kPackets packets, which a chain of N states loses with chances
+/// `loss` in its states, N square transitions `next`, stationary distribution `at`: the variance of one
+/// packet, and the covariances of its successors, summed until they have died away.
+template <std::size_t N>
+double deviation_of_share(const double (&next)[N][N], const double (&at)[N], const double (&loss)[N]) {
+  double share = 0;
+  for (std::size_t i = 0; i < N; ++i) share += at[i] * loss[i];
+  double ahead[N];  // expected loss k packets later, above the mean, by state now
+  for (std::size_t i = 0; i < N; ++i) ahead[i] = loss[i] - share;
+  double sum = share * (1 - share);
+  for (int k = 1; k < 1000; ++k) {
+    double further[N] = {};
+    for (std::size_t i = 0; i < N; ++i) {
+      for (std::size_t j = 0; j < N; ++j) further[i] += next[i][j] * ahead[j];
+      sum += 2 * at[i] * (loss[i] - share) * further[i];
+    }
+    std::copy(std::begin(further), std::end(further), ahead);
+  }
+  return std::sqrt(sum / kPackets);
+}
+
 TEST(LossProcess, NoneLosesNothing) { EXPECT_EQ(observe({}, 1).share, 0); }
 
 TEST(LossProcess, BernoulliMatchesItsProbability) {
@@ -51,7 +74,9 @@ TEST(LossProcess, GilbertElliottMatchesItsClosedForm) {
   const double share = gilbert_elliott_loss(model);
   EXPECT_DOUBLE_EQ(share, 0.01 / 0.21);
   const double memory = 1 - model.p - model.r;  // second eigenvalue: autocorrelation of the chain
-  EXPECT_NEAR(seen.share, share, 5 * std::sqrt(share * (1 - share) / kPackets * (1 + memory) / (1 - memory)));
+  const double deviation = std::sqrt(share * (1 - share) / kPackets * (1 + memory) / (1 - memory));
+  EXPECT_NEAR(deviation_of_share<2>({{0.99, 0.01}, {0.2, 0.8}}, {1 - share, share}, {0, 1}), deviation, 1e-9);
+  EXPECT_NEAR(seen.share, share, 5 * deviation);
   EXPECT_NEAR(seen.mean_run, 1 / model.r, 5 * std::sqrt((1 - model.r) / (model.r * model.r) / seen.runs));
 }
 
@@ -63,7 +88,9 @@ TEST(LossProcess, GilbertElliottWithPartialLosses) {
   model.loss_bad = 0.5;
   const double share = gilbert_elliott_loss(model);
   EXPECT_NEAR(share, (1.0 / 3) * 0.5 + (2.0 / 3) * 0.01, 1e-12);
-  EXPECT_NEAR(observe(model, 5).share, share, 5 * std::sqrt(share * (1 - share) / kPackets * 1.85 / 0.15));
+  const double deviation = deviation_of_share<2>({{0.95, 0.05}, {0.1, 0.9}}, {2.0 / 3, 1.0 / 3},
+                                                 {model.loss_good, model.loss_bad});
+  EXPECT_NEAR(observe(model, 5).share, share, 5 * deviation);
 }
 
 TEST(LossProcess, FourStatesMatchTheirStationaryDistribution) {
@@ -77,8 +104,11 @@ TEST(LossProcess, FourStatesMatchTheirStationaryDistribution) {
   const double s3 = s1 * model.p13 / model.p31;
   const double s2 = s3 * model.p32 / model.p23;
   const double s4 = s1 * model.p14;
-  const double share = (s3 + s4) / (s1 + s2 + s3 + s4);
-  EXPECT_NEAR(observe(model, 6).share, share, 5 * std::sqrt(share * (1 - share) / kPackets * 10));
+  const double all = s1 + s2 + s3 + s4;
+  const double deviation =
+      deviation_of_share<4>({{0.97, 0, 0.02, 0.01}, {0, 0.5, 0.5, 0}, {0.3, 0.2, 0.5, 0}, {1, 0, 0, 0}},
+                            {s1 / all, s2 / all, s3 / all, s4 / all}, {0, 0, 1, 1});
+  EXPECT_NEAR(observe(model, 6).share, (s3 + s4) / all, 5 * deviation);
 }
 
 TEST(LossProcess, PeriodicLosesTheTailOfEachPeriod) {
