@@ -1,0 +1,50 @@
+#include "lab/direct_carrier.h"
+
+#include <cmath>
+#include <utility>
+
+namespace atlaswire::lab {
+
+DirectCarrier::DirectCarrier(const PointSettings& settings, FrameSource& source, Contender& contender,
+                             const HeadMotion& motion)
+    : rate_(settings.server_hz),
+      latency_(from_seconds(settings.latency_ms * 1e-3)),
+      source_(&source),
+      contender_(&contender),
+      motion_(&motion),
+      first_(-static_cast<std::int64_t>(std::ceil(to_seconds(latency_) * rate_ - 1e-9))),
+      next_(first_) {}
+
+Duration DirectCarrier::start_of(std::int64_t frame) const {
+  return from_seconds(static_cast<double>(frame) / rate_);
+}
+
+void DirectCarrier::advance(Duration now) {
+  // Half a microsecond: frames that fall on a display frame are on it, whatever rounding did.
+  constexpr Duration kRounding{500};
+  while (start_of(next_) + latency_ <= now + kRounding) carry(next_++);
+}
+
+void DirectCarrier::carry(std::int64_t frame) {
+  const Duration start = start_of(frame);
+  const FrameTiming timing{
+      .posed = start, .shown_from = start + latency_, .shown_until = start_of(frame + 1) + latency_};
+  server::EncodedFrame made = source_->make({}, motion_->at(start), timing, contender_->take_refresh());
+  posed_.emplace(made.frame, start);
+  client::UpdateArrival update;
+  update.update.octets = made.meta.size();
+  update.update.meta = {.frame = made.frame, .cover = made.cover, .meta = std::move(made.meta)};
+  contender_->on_update(update);
+  proto::AssembledFrame picture;
+  picture.frame = made.frame;
+  picture.idr = made.idr;
+  picture.octets = made.video.size();
+  picture.access_unit = std::move(made.video);
+  contender_->on_frame(picture);
+}
+
+void DirectCarrier::add_figures(std::vector<Figure>& figures) const {
+  for (const char* name : {"frames_lost", "packets_lost_percent"}) figures.push_back({name, 0.0});
+}
+
+}  // namespace atlaswire::lab

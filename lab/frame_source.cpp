@@ -1,0 +1,114 @@
+#include "lab/frame_source.h"
+
+#include "base/program.h"
+
+#include <cmath>
+#include <utility>
+
+namespace atlaswire::lab {
+namespace {
+
+/// What is left of a frame's life is cut into so many steps where the future may be known.
+constexpr int kForeseenSteps = 3;
+
+double mean(double sum, std::uint64_t count) {
+  return count == 0 ? kNotApplicable : sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+FrameSource::FrameSource(const PointSettings& settings, Contender& contender, const HeadMotion& motion)
+    : settings_(settings),
+      contender_(&contender),
+      motion_(&motion),
+      is_warp_(settings.method != "sas"),
+      eyes_(is_warp_ && settings.stereo ? 2 : 1),
+      camera_(display_camera(settings)) {
+  if (settings.bitrate_mbps > 0 && settings.qp < 0) {
+    const double rate = settings.bitrate_mbps * 1e6 / eyes_;
+    budget_.emplace(BitRate{static_cast<std::uint64_t>(std::llround(rate))}, settings.server_hz);
+  }
+}
+
+server::ViewRequest FrameSource::request_for(const Pose& head, const FrameTiming& timing) const {
+  server::ViewRequest request;
+  request.camera = camera_;
+  request.camera.pose = head;
+  request.cover = timing.shown_until - timing.posed;
+  const Duration middle = (timing.shown_from + timing.shown_until) / 2;
+  if (is_warp_) {
+    if (settings_.predict) request.camera.pose = extrapolate(head, middle - timing.posed);
+    if (settings_.stereo) request.camera.pose = render::eye_pose(request.camera.pose, -settings_.ipd / 2);
+    return request;
+  }
+  if (settings_.stereo) request.hints.eye_separation = settings_.ipd;
+  if (settings_.shade_at_display) request.hints.shading_eye = motion_->at(middle).position;
+  for (int i = 0; settings_.foresight && i <= kForeseenSteps; ++i) {
+    request.hints.foreseen.push_back(
+        motion_->at(timing.shown_from + (timing.shown_until - timing.shown_from) * i / kForeseenSteps));
+  }
+  return request;
+}
+
+server::EncodedFrame FrameSource::make(PoseId id, const Pose& head, const FrameTiming& timing, bool refresh) {
+  server::ViewRequest request = request_for(head, timing);
+  request.pose = id;
+  request.refresh = refresh;
+  if (budget_) request.bit_rate = budget_->video_rate();
+  const Time start = steady_now();
+  server::PreparedFrame prepared = contender_->maker().render(request);
+  const Time rendered = steady_now();
+  Result<server::EncodedFrame> frame = contender_->maker().encode(std::move(prepared));
+  if (!frame) throw ProgramError(ExitCode::kInternal, "encoding failed: " + frame.error().message());
+  making_ += rendered - start;
+  encoding_ += steady_now() - rendered;
+  count(*frame);
+  return std::move(*frame);
+}
+
+void FrameSource::count(const server::EncodedFrame& frame) {
+  if (frames_++ == 0) first_meta_bytes_ = frame.meta.size();
+  video_bytes_ += frame.video.size();
+  meta_bytes_ += frame.meta.size();
+  if (budget_) budget_->on_frame(frame.meta.size());
+  const server::FrameReport& report = frame.report;
+  shaded_texels_ += report.shaded_texels;
+  visible_patches_ += report.visible_patches;
+  bias_ += report.bias;
+  used_share_ += static_cast<double>(report.usage.allocated) / static_cast<double>(settings_.atlas.area());
+  render_.visibility += report.render.visibility;
+  render_.allocation += report.render.allocation;
+  render_.shading += report.render.shading;
+  render_.conversion += report.render.conversion;
+}
+
+void FrameSource::add_figures(Duration streamed, std::vector<Figure>& figures) const {
+  const double seconds = to_seconds(streamed);
+  const auto mbps = [&](std::uint64_t bytes) { return eyes_ * 8e-6 * static_cast<double>(bytes) / seconds; };
+  const bool is_bare = settings_.bitrate_mbps <= 0 && settings_.qp < 0;
+  const double video = is_bare ? kNotApplicable : mbps(video_bytes_);
+  const auto of_atlas = [&](double value) { return is_warp_ ? kNotApplicable : value; };
+  figures.push_back({"video_mbps", video});
+  figures.push_back({"meta_mbps", mbps(meta_bytes_)});
+  figures.push_back({"total_mbps", video + mbps(meta_bytes_)});
+  figures.push_back({"first_meta_kb", 1e-3 * static_cast<double>(first_meta_bytes_)});
+  figures.push_back({"shaded_mpix_per_s", 1e-6 * eyes_ * static_cast<double>(shaded_texels_) / seconds});
+  figures.push_back({"visible_patches", of_atlas(mean(static_cast<double>(visible_patches_), frames_))});
+  figures.push_back({"atlas_used", of_atlas(mean(used_share_, frames_))});
+  figures.push_back({"bias", of_atlas(mean(bias_, frames_))});
+  figures.push_back({"server_frames", static_cast<double>(frames_)});
+}
+
+void FrameSource::add_timings(std::vector<Figure>& timings) const {
+  const auto add = [&](const char* name, Duration sum) {
+    timings.push_back({name, mean(to_ms(sum), frames_)});
+  };
+  add("server_ms", making_ + encoding_);
+  add("visibility_ms", render_.visibility);
+  add("allocation_ms", render_.allocation);
+  add("shading_ms", render_.shading);
+  add("conversion_ms", render_.conversion);
+  add("encoding_ms", encoding_);
+}
+
+}  // namespace atlaswire::lab

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "base/time.h"
+#include "lab/contender.h"
+#include "lab/head_motion.h"
+#include "lab/point.h"
+#include "lab/point_result.h"
+#include "lab/rate_budget.h"
+#include "server/encoded_frame.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace atlaswire::lab {
+
+/// When a frame's pose was taken and when its picture will be looked at, as far as the server can know; times
+/// since the path's start.
+struct FrameTiming {
+  Duration posed{};
+  Duration shown_from{};
+  Duration shown_until{};
+};
+
+/// The server's end of a point: asks the contender for frames, holds all channels to the point's rate, and
+/// counts what they take of bytes, texels and wall-clock time.
+class FrameSource {
+ public:
+  /// Both are borrowed.
+  FrameSource(const PointSettings& settings, Contender& contender, const HeadMotion& motion);
+
+  /// A frame for `head`, the newest pose that has arrived. `refresh`: the client cannot decode P-frames.
+  /// Throws ProgramError when the encoder fails.
+  server::EncodedFrame make(PoseId id, const Pose& head, const FrameTiming& timing, bool refresh);
+
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  /// Bytes, texels and memory over `streamed`: `video_mbps`, `meta_mbps`, ...
+  void add_figures(Duration streamed, std::vector<Figure>& figures) const;
+  /// Means over frames in milliseconds: `server_ms` and its parts.
+  void add_timings(std::vector<Figure>& timings) const;
+
+ private:
+  [[nodiscard]] server::ViewRequest request_for(const Pose& head, const FrameTiming& timing) const;
+  void count(const server::EncodedFrame& frame);
+
+  PointSettings settings_;
+  Contender* contender_;
+  const HeadMotion* motion_;
+  bool is_warp_;
+  double eyes_;  ///< pictures that the method needs for the display's eyes; we make one of them
+  std::optional<RateBudget> budget_;
+  render::Camera camera_;
+
+  std::uint64_t frames_ = 0;
+  std::uint64_t video_bytes_ = 0;
+  std::uint64_t meta_bytes_ = 0;
+  std::uint64_t first_meta_bytes_ = 0;
+  std::uint64_t shaded_texels_ = 0;
+  std::uint64_t visible_patches_ = 0;
+  double bias_ = 0;
+  double used_share_ = 0;
+  render::RenderTimings render_;
+  Duration making_{};
+  Duration encoding_{};
+};
+
+}  // namespace atlaswire::lab

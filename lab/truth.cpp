@@ -1,0 +1,109 @@
+#include "lab/truth.h"
+
+#include "base/program.h"
+#include "render/passes/forward.h"
+#include "render/passes/scene_gpu.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace atlaswire::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// FNV-1a, 64 bits: names of files in a cache that a person may delete at any time.
+std::uint64_t hash_of(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return hash;
+}
+
+/// A name alone stands for a built-in scene; a file is told apart by its size and age too.
+std::string identity_of(const std::string& scene) {
+  std::error_code error;
+  const auto size = fs::file_size(scene, error);
+  if (error) return scene;
+  const auto age = fs::last_write_time(scene, error).time_since_epoch().count();
+  return fmt::format("{}:{}:{}", fs::absolute(scene).string(), size, age);
+}
+
+std::optional<render::Picture> read_packed(const fs::path& file, Extent2D extent) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  const std::vector<char> packed{std::istreambuf_iterator<char>(in), {}};
+  render::Picture picture(extent);
+  const std::size_t size =
+      ZSTD_decompress(picture.rgba.data(), picture.rgba.size(), packed.data(), packed.size());
+  if (ZSTD_isError(size) != 0 || size != picture.rgba.size()) return std::nullopt;
+  return picture;
+}
+
+/// Whole or not at all, whoever else writes the same one: a picture that cannot be kept is only slower.
+void write_packed(const fs::path& file, const render::Picture& picture) {
+  std::vector<char> packed(ZSTD_compressBound(picture.rgba.size()));
+  const std::size_t size =
+      ZSTD_compress(packed.data(), packed.size(), picture.rgba.data(), picture.rgba.size(), 1);
+  if (ZSTD_isError(size) != 0) return;
+  const fs::path fresh = fmt::format("{}.{}", file.string(), getpid());
+  std::ofstream out(fresh, std::ios::binary);
+  out.write(packed.data(), static_cast<std::streamsize>(size));
+  out.close();
+  std::error_code error;
+  if (out) fs::rename(fresh, file, error);
+  if (!out || error) fs::remove(fresh, error);
+}
+
+}  // namespace
+
+struct Truth::Parts {
+  Parts(render::Device& device, std::shared_ptr<const render::Scene> s)
+      : scene(device, std::move(s)), forward(device, scene) {}
+  render::SceneGpu scene;
+  render::ForwardPass forward;
+};
+
+Truth::Truth(render::Device& device, std::shared_ptr<const render::Scene> scene,
+             const std::string& scene_name, fs::path cache)
+    : device_(&device),
+      scene_(std::move(scene)),
+      identity_(identity_of(scene_name)),
+      cache_(std::move(cache)) {
+  if (cache_.empty()) return;
+  std::error_code error;
+  fs::create_directories(cache_, error);
+  if (error) {
+    throw ProgramError(ExitCode::kCannotWrite,
+                       fmt::format("cannot make folder '{}': {}", cache_.string(), error.message()));
+  }
+}
+Truth::~Truth() = default;
+
+fs::path Truth::place_of(const render::Camera& camera) const {
+  const auto& [position, turn, velocity, spin] = camera.pose;
+  const std::string key =
+      fmt::format("{}|{}x{}|{:.17g}|{:.17g}|{:.17g},{:.17g},{:.17g}|{:.17g},{:.17g},{:.17g},{:.17g}",
+                  identity_, camera.extent.width, camera.extent.height, camera.vertical_fov,
+                  camera.near_plane, position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z);
+  return cache_ / fmt::format("{:016x}.zst", hash_of(key));
+}
+
+render::Picture Truth::picture(const render::Camera& camera) {
+  if (!cache_.empty()) {
+    if (auto kept = read_packed(place_of(camera), camera.extent)) return std::move(*kept);
+  }
+  if (parts_ == nullptr) parts_ = std::make_unique<Parts>(*device_, scene_);
+  render::Picture picture = parts_->forward.render(camera);
+  if (!cache_.empty()) write_packed(place_of(camera), picture);
+  return picture;
+}
+
+}  // namespace atlaswire::lab

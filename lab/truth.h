@@ -1,0 +1,38 @@
+#pragma once
+
+#include "render/camera.h"
+#include "render/gpu/open_device.h"
+#include "render/image/picture.h"
+#include "render/scene/scene.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace atlaswire::lab {
+
+/// Ground truth: the scene drawn by a forward pass for exactly the displayed pose ([SAS] 5.6). Pictures are
+/// kept in a folder that the points of a sweep share, since all of them are compared with the same ones.
+class Truth {
+ public:
+  /// `cache`: empty: none; made if missing. `scene_name` tells scenes apart there, the file's size and age
+  /// with it. Throws ProgramError when the folder cannot be made.
+  Truth(render::Device& device, std::shared_ptr<const render::Scene> scene, const std::string& scene_name,
+        std::filesystem::path cache);
+  ~Truth();
+
+  /// Alpha: 255 where opaque or masked geometry was hit, 0 where nothing was drawn.
+  render::Picture picture(const render::Camera& camera);
+
+ private:
+  struct Parts;
+  [[nodiscard]] std::filesystem::path place_of(const render::Camera& camera) const;
+
+  render::Device* device_;
+  std::shared_ptr<const render::Scene> scene_;
+  std::string identity_;
+  std::filesystem::path cache_;
+  std::unique_ptr<Parts> parts_;  ///< made when first needed
+};
+
+}  // namespace atlaswire::lab
