@@ -14,16 +14,26 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  the backend must be chosen first
 
 COLORS = {"up": "#d95f02", "down": "#1b6ca8"}
+MORE_COLORS = ["#7a9f35", "#8e4585", "#b8860b", "#555555"]
+
+
+def color(way):
+    """One a direction, for flows' own paths another."""
+    if way in COLORS:
+        return COLORS[way]
+    direction, _, path = way.split(" ")
+    return MORE_COLORS[(2 * int(path) + (direction == "up")) % len(MORE_COLORS)]
 
 
 def read_log(name):
-    """Per direction, the originals in order of arrival, as dicts of numbers and the fate."""
+    """Per direction of a path, the originals in order of arrival, as dicts of numbers and the fate."""
     ways = {"up": [], "down": []}
     with open(name, newline="", encoding="ascii") as file:
         for row in csv.DictReader(file):
             if row["duplicate"] == "1":
                 continue
-            ways[row["direction"]].append({
+            way = row["direction"] if row["path"] == "0" else f"{row['direction']} path {row['path']}"
+            ways.setdefault(way, []).append({
                 "packet": int(row["packet"]),
                 "size": int(row["size"]),
                 "arrived": int(row["arrived_ns"]) * 1e-9,
@@ -32,7 +42,7 @@ def read_log(name):
             })
     for packets in ways.values():
         packets.sort(key=lambda p: p["packet"])
-    return ways
+    return {way: packets for way, packets in ways.items() if packets}
 
 
 def loss_runs(packets):
@@ -49,8 +59,6 @@ def loss_runs(packets):
 
 def throughput(packets, time, window):
     """Mbps of payload per window, by `time` ("arrived": offered, "delivered": what came out)."""
-    if not packets:
-        return [], []
     end = max(p["arrived"] for p in packets) + window
     bins = [0] * (int(end / window) + 1)
     for packet in packets:
@@ -62,18 +70,25 @@ def throughput(packets, time, window):
     return [(i + 0.5) * window for i in range(len(bins) - 1)], [b * 8e-6 / window for b in bins[:-1]]
 
 
+def add_legend(axes, place):
+    """In columns of four."""
+    entries = len(axes.get_legend_handles_labels()[0])
+    axes.legend(loc=place, fontsize=8, framealpha=0.6, ncol=1 + (entries - 1) // 4)
+
+
 def draw_delay(axes, ways):
     for way, packets in ways.items():
         came = [p for p in packets if p["fate"] == "delivered"]
         gone = [p for p in packets if p["fate"] != "delivered"]
         axes.plot([p["arrived"] for p in came], [(p["delivered"] - p["arrived"]) * 1e3 for p in came], ".",
-                  markersize=1.5, color=COLORS[way], label=f"{way}: {len(came)} delivered")
-        axes.plot([p["arrived"] for p in gone], [0] * len(gone), "|", markersize=6, color=COLORS[way], alpha=0.6,
-                  clip_on=False, label=f"{way}: {len(gone)} not (ticks)")
+                  markersize=1.5, color=color(way), label=f"{way}: {len(came)} delivered")
+        if gone:  # an empty line that is not clipped has no extent, and squeezes the whole figure to none
+            axes.plot([p["arrived"] for p in gone], [0] * len(gone), "|", markersize=6, color=color(way), alpha=0.6,
+                      clip_on=False, label=f"{way}: {len(gone)} not (ticks)")
     axes.set_ylim(bottom=0)
     axes.set_xlabel("entered at, s")
     axes.set_ylabel("delay, ms")
-    axes.legend(loc="best", fontsize=8, framealpha=0.6)
+    add_legend(axes, "best")
 
 
 def run_class(length):
@@ -88,13 +103,15 @@ def class_name(number):
 
 def draw_runs(axes, ways):
     classes = 0
-    for shift, (way, packets) in zip((-0.2, 0.2), ways.items()):
+    width = 0.8 / max(len(ways), 1)
+    for index, (way, packets) in enumerate(ways.items()):
+        shift = (index + 0.5) * width - 0.4
         runs = loss_runs(packets)
         if not runs:
             continue
         counts = [sum(run_class(r) == n for r in runs) for n in range(run_class(max(runs)) + 1)]
         classes = max(classes, len(counts))
-        axes.bar([n + shift for n in range(len(counts))], counts, width=0.4, color=COLORS[way],
+        axes.bar([n + shift for n in range(len(counts))], counts, width=width, color=color(way),
                  label=f"{way}: {100 * sum(runs) / len(packets):.2f} % lost, runs of {sum(runs) / len(runs):.1f} on average")
     axes.set_xlabel("packets lost in a row")
     axes.set_ylabel("runs")
@@ -102,7 +119,8 @@ def draw_runs(axes, ways):
     if classes:
         axes.set_yscale("log")
         axes.set_ylim(bottom=0.5)
-        axes.legend(loc="upper right", fontsize=8, framealpha=0.6)
+        axes.set_xlim(-0.5, classes - 0.5)
+        add_legend(axes, "upper right")
     else:
         axes.set_yticks([])
         axes.text(0.5, 0.5, "nothing was lost", ha="center", va="center", transform=axes.transAxes)
@@ -110,13 +128,13 @@ def draw_runs(axes, ways):
 
 def draw_throughput(axes, ways, window):
     for way, packets in ways.items():
-        axes.plot(*throughput(packets, "arrived", window), color=COLORS[way], linewidth=1, linestyle=":",
+        axes.plot(*throughput(packets, "arrived", window), color=color(way), linewidth=1, linestyle=":",
                   label=f"{way}: offered")
-        axes.plot(*throughput(packets, "delivered", window), color=COLORS[way], linewidth=1.2, label=f"{way}: came out")
+        axes.plot(*throughput(packets, "delivered", window), color=color(way), linewidth=1.2, label=f"{way}: came out")
     axes.set_ylim(bottom=0)
     axes.set_xlabel("time, s")
     axes.set_ylabel(f"Mbps, over {window * 1e3:.0f} ms")
-    axes.legend(loc="best", fontsize=8, framealpha=0.6)
+    add_legend(axes, "best")
 
 
 def main():
