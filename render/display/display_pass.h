@@ -29,6 +29,8 @@ class DisplayPass {
   /// The last picture drawn; empty before the first. Alpha: 255 where opaque or masked geometry was hit, 0
   /// where nothing was drawn. Valid until the next call.
   const Picture& read_back();
+  /// What draw() drew into; null before the first, and another one whenever a camera has another extent.
+  [[nodiscard]] OffscreenTarget* target() { return target_.get(); }
 
  private:
   const Pipeline& pipeline(PatchClass::Alpha alpha, bool double_sided);

@@ -24,6 +24,20 @@ OffscreenTarget::OffscreenTarget(const Device& device, const std::string& name, 
                         .usage = vk::BufferUsageFlagBits::eTransferDst,
                         .residence = Residence::kReadback}) {}
 
+namespace {
+
+void begin_rendering(const vk::raii::CommandBuffer& commands, Extent2D extent,
+                     const vk::RenderingAttachmentInfo& color, const vk::RenderingAttachmentInfo& depth) {
+  commands.beginRendering({.renderArea = {.extent = {extent.width, extent.height}},
+                           .layerCount = 1,
+                           .colorAttachmentCount = 1,
+                           .pColorAttachments = &color,
+                           .pDepthAttachment = &depth});
+  set_viewport(commands, extent);
+}
+
+}  // namespace
+
 void OffscreenTarget::begin(const vk::raii::CommandBuffer& commands, const glm::vec3& background,
                             Depth depth_after) {
   discard_image(commands, color, ImageUse::kColorTarget);
@@ -41,13 +55,21 @@ void OffscreenTarget::begin(const vk::raii::CommandBuffer& commands, const glm::
                                                               ? vk::AttachmentStoreOp::eStore
                                                               : vk::AttachmentStoreOp::eDontCare,
                                                .clearValue = vk::ClearDepthStencilValue{.depth = 0.0F}};
-  const Extent2D extent = color.extent();
-  commands.beginRendering({.renderArea = {.extent = {extent.width, extent.height}},
-                           .layerCount = 1,
-                           .colorAttachmentCount = 1,
-                           .pColorAttachments = &color_info,
-                           .pDepthAttachment = &depth_info});
-  set_viewport(commands, extent);
+  begin_rendering(commands, color.extent(), color_info, depth_info);
+}
+
+void OffscreenTarget::resume(const vk::raii::CommandBuffer& commands) {
+  use_image(commands, color, ImageUse::kColorTarget);
+  discard_image(commands, depth, ImageUse::kDepthTarget);
+  const vk::RenderingAttachmentInfo color_info{.imageView = color.view(),
+                                               .imageLayout = color.layout(),
+                                               .loadOp = vk::AttachmentLoadOp::eLoad,
+                                               .storeOp = vk::AttachmentStoreOp::eStore};
+  const vk::RenderingAttachmentInfo depth_info{.imageView = depth.view(),
+                                               .imageLayout = depth.layout(),
+                                               .loadOp = vk::AttachmentLoadOp::eDontCare,
+                                               .storeOp = vk::AttachmentStoreOp::eDontCare};
+  begin_rendering(commands, color.extent(), color_info, depth_info);
 }
 
 void OffscreenTarget::record_readback(const vk::raii::CommandBuffer& commands) {

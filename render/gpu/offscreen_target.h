@@ -28,6 +28,8 @@ struct OffscreenTarget {
   /// is infinity, viewport set. The caller ends it with endRendering().
   void begin(const vk::raii::CommandBuffer& commands, const glm::vec3& background,
              Depth depth_after = Depth::kDropped);
+  /// Begins rendering over the colours that are there already; the depth is undefined.
+  void resume(const vk::raii::CommandBuffer& commands);
   /// Copies the colour to the host buffer; it is in use kTransferSource then.
   void record_readback(const vk::raii::CommandBuffer& commands);
   /// What record_readback() copied, once it is waited for.
