@@ -60,8 +60,8 @@ TEST(SuperblockStore, PacksTheExampleOfThePaper) {
   EXPECT_EQ(blocks[9], (Block{16, 2, 2, 0, false}));  // b10..b12
   EXPECT_EQ(blocks[11], (Block{16, 4, 2, 0, false}));
   EXPECT_EQ(store.free_superblocks(), 1U);
-  EXPECT_EQ(store.stacked(kOne), 1U);  // b13
-  EXPECT_EQ(store.stacked(kTwo), 1U);  // b14
+  EXPECT_EQ(store.stacked(kOne), 1U);               // b13
+  EXPECT_EQ(store.stacked(kTwo), 1U);               // b14
   EXPECT_EQ(store.usage().partial_tail, 2U * 16U);  // room for two of height 4
   EXPECT_EQ(total(store.usage()), 256U);
 }

@@ -1,0 +1,107 @@
+#include "render/atlas/strategy.h"
+
+#include "render/atlas/atlas_demand.h"
+#include "render/atlas/block_memory.h"
+#include "render/atlas/patch_ledger.h"
+
+#include <array>
+#include <vector>
+
+namespace atlaswire::render {
+namespace {
+
+/// Requests in order of level, the largest first, then of patch, straight to the memory.
+class DirectAllocator final : public AtlasAllocator {
+ public:
+  DirectAllocator(const AllocatorSettings& settings, std::uint32_t patch_count,
+                  std::unique_ptr<BlockMemory> memory, bool resets)
+      : superblock_area_(std::uint64_t{1} << (2 * settings.superblock_log2)),
+        area_(settings.atlas.area()),
+        ledger_(settings, patch_count),
+        demand_(settings),
+        memory_(std::move(memory)),
+        resets_(resets) {}
+
+  const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) override;
+  [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return ledger_.blocks(); }
+  [[nodiscard]] AtlasUsage usage() const override { return memory_->usage(); }
+  [[nodiscard]] bool wants_reset() const override { return wants_reset_; }
+
+ private:
+  void place_pending();
+
+  std::uint64_t superblock_area_;
+  std::uint64_t area_;
+  PatchLedger ledger_;
+  AtlasDemand demand_;
+  std::unique_ptr<BlockMemory> memory_;
+  bool resets_;
+  std::vector<std::uint32_t> order_;
+  LayoutChange change_;
+  bool wants_reset_ = false;
+};
+
+const LayoutChange& DirectAllocator::update(std::span<const BlockRequest> visible, bool may_reset) {
+  change_.reset = may_reset && wants_reset_;
+  ledger_.advance(visible, change_.reset);
+  if (change_.reset) {
+    memory_->clear();
+  } else {
+    for (const Block& block : ledger_.released()) memory_->release(block);
+  }
+  place_pending();
+  AtlasOutcome outcome = ledger_.report(change_);
+  outcome.used_superblocks = static_cast<std::uint32_t>((area_ - memory_->usage().free) / superblock_area_);
+  wants_reset_ = demand_.reset_helps(ledger_.wanted(), outcome) && resets_;
+  return change_;
+}
+
+void DirectAllocator::place_pending() {
+  const LevelNumbers& numbers = ledger_.numbers();
+  PerLevel cursor{};
+  std::uint32_t count = 0;
+  for (std::uint32_t i = numbers.count(); i-- > 0;) {
+    cursor[i] = count;
+    count += ledger_.requested()[i];
+  }
+  order_.resize(count);
+  for (const std::uint32_t i : ledger_.pending()) {
+    order_[cursor[numbers.number(ledger_.entry(i).want)]++] = i;
+  }
+  for (const std::uint32_t i : order_) {
+    const Level want = ledger_.entry(i).want;
+    if (const auto at = memory_->take(want)) ledger_.place(i, {want, *at});
+  }
+}
+
+constexpr std::array kAll{Strategy::kS0, Strategy::kS1, Strategy::kS2, Strategy::kS3, Strategy::kQuadtree};
+constexpr std::array<std::string_view, kAll.size()> kNames{"S0", "S1", "S2", "S3", "quadtree"};
+
+}  // namespace
+
+std::span<const Strategy> strategies() { return kAll; }
+
+std::string_view name_of(Strategy strategy) { return kNames[static_cast<std::size_t>(strategy)]; }
+
+std::unique_ptr<AtlasAllocator> make_allocator(Strategy strategy, const AllocatorSettings& settings,
+                                               std::uint32_t patch_count) {
+  check_allocator_settings(settings);
+  const auto direct = [&](std::unique_ptr<BlockMemory> memory, bool resets) {
+    return std::make_unique<DirectAllocator>(settings, patch_count, std::move(memory), resets);
+  };
+  switch (strategy) {
+    case Strategy::kS1:
+      return direct(make_level_superblocks(settings, true), true);
+    case Strategy::kS2:
+      return direct(make_level_superblocks(settings, false), true);
+    case Strategy::kS3:
+      return direct(make_level_superblocks(settings, false), false);
+    case Strategy::kQuadtree:
+      return direct(make_quadtree(settings), true);
+    case Strategy::kS0:
+      break;
+  }
+  return make_sequential_allocator(settings, patch_count);
+}
+
+}  // namespace atlaswire::render
