@@ -33,10 +33,15 @@ std::size_t Lane::stream_room() const {
 }
 
 void Lane::sort_decisions() {
-  for (const Decision& decision : link_.take_decisions()) {
-    decisions_.push_back(decision);
+  std::vector<Decision> fresh = link_.take_decisions();
+  for (const Decision& decision : fresh) {
     const auto stream = streams_.find(decision.flow);
     if (stream != streams_.end()) stream->second.decided(decision);
+  }
+  if (decisions_.empty()) {
+    decisions_ = std::move(fresh);
+  } else {
+    decisions_.insert(decisions_.end(), fresh.begin(), fresh.end());
   }
 }
 

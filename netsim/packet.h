@@ -45,11 +45,11 @@ struct Decision {
   std::uint64_t packet = 0;  ///< number of the packet, counted from 0 in order of arrival
   FlowId flow{};             ///< as given to `send`
   std::uint32_t size = 0;    ///< octets of payload
-  Ecn ecn{};                 ///< as given to `send`
   Time arrived{};            ///< when it was given to `send`
   Time left_queue{};         ///< when the bottleneck had served it; equals `arrived` when dropped before
   Time delivered{};          ///< when it reaches the far end; meaningless unless delivered
   Fate fate = Fate::kDelivered;
+  Ecn ecn{};  ///< as given to `send`
   bool corrupted = false;
   bool duplicate = false;
   bool marked = false;     ///< ECN congestion experienced
