@@ -17,7 +17,7 @@ void main() {
     uint at = i < size ? stacks[base + i] : 0u;
     bool keep = i < size && superblocks[superblock_of(at)].reclaimed == 0u;
     uint total;
-    uint place = scan_group(keep ? 1u : 0u, total);
+    uint place = scan_flag(keep, total);
     if (keep) stacks[base + kept + place] = at;
     kept += total;
   }

@@ -15,6 +15,8 @@ using uint = std::uint32_t;
 
 /// Invocations of a work group; items of a tile.
 AW_CONST kGroup = 256u;
+/// Invocations of a work group over counters and levels, and of the one that provisions.
+AW_CONST kKeyGroup = 32u;
 /// Levels of blocks with sides from 2^0 to 2^12 (render/atlas/block_level.h numbers them).
 AW_CONST kMostLevels = 91u;
 AW_CONST kMostSides = 13u;
@@ -75,7 +77,6 @@ struct Constants {
   uint high_superblocks;  // AtlasDemand
   uint capacity;          // the atlas's area
   uint regrow_limit;
-  uint tiles;  // most tiles of items
 };
 
 /// A patch's place in the atlas.
@@ -163,7 +164,7 @@ struct Report {
 
 #undef AW_CONST
 #ifdef __cplusplus
-static_assert(sizeof(Constants) == 44 && sizeof(Record) == 8 && sizeof(Item) == 16);
+static_assert(sizeof(Constants) == 40 && sizeof(Record) == 8 && sizeof(Item) == 16);
 static_assert(sizeof(Superblock) == 16 && sizeof(Segment) == 16 && sizeof(Change) == 12);
 static_assert(offsetof(Store, events) == 32 && offsetof(Store, wanted) == 80);
 static_assert(sizeof(Round) == 3 * 91 * 4 && sizeof(Report) == 32);

@@ -5,7 +5,7 @@
 // shared memory.
 #include "shaders/alloc_state.glsl"
 
-layout(local_size_x = kGroup) in;
+layout(local_size_x = kKeyGroup) in;
 
 shared uint requested[kMostLevels];
 shared uint inflow[kMostLevels];
@@ -186,19 +186,19 @@ void place_outgrown() {
 }
 
 void main() {
-  uint i = gl_LocalInvocationID.x;
-  if (i < set.levels) {
+  uint mine = gl_LocalInvocationID.x;
+  for (uint i = mine; i < set.levels; i += kKeyGroup) {
     requested[i] = store.counted[kRequests * set.levels + i];
     stack_size[i] = store.stack_size[i] + store.counted[kReleases * set.levels + i];
     leftover_size[i] = 0u;
     leftover_taken[i] = 0u;
   }
-  if (i < kMostSides) {
-    tail_superblock[i] = store.tail_superblock[i];
-    tail_row[i] = store.tail_row[i];
+  if (mine < kMostSides) {
+    tail_superblock[mine] = store.tail_superblock[mine];
+    tail_row[mine] = store.tail_row[mine];
   }
   barrier();
-  if (i == 0u) {
+  if (mine == 0u) {
     free_count = store.free_count;
     allocated = store.allocated;
     segment_count = 0u;
@@ -210,13 +210,13 @@ void main() {
     store.allocated = allocated;
   }
   barrier();
-  if (i < set.levels) {
+  for (uint i = mine; i < set.levels; i += kKeyGroup) {
     store.stack_size[i] = stack_size[i];
     store.leftover_size[i] = leftover_size[i];
     store.leftover_taken[i] = leftover_taken[i];
   }
-  if (i < kMostSides) {
-    store.tail_superblock[i] = tail_superblock[i];
-    store.tail_row[i] = tail_row[i];
+  if (mine < kMostSides) {
+    store.tail_superblock[mine] = tail_superblock[mine];
+    store.tail_row[mine] = tail_row[mine];
   }
 }

@@ -54,6 +54,6 @@ void main() {
   for (uint key = gl_LocalInvocationID.x; key < keys; key += kGroup) {
     uint count = 0u;
     for (uint word = 0u; word < kWords; ++word) count += uint(bitCount(masks[key * kWords + word]));
-    tile_counts[key * set.tiles + gl_WorkGroupID.x] = count;
+    tile_counts[gl_WorkGroupID.x * keys + key] = count;
   }
 }

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One work group: where each group's events go in the list, and superblocks without a block in use freed, the
+// One work group: where the events of each run of patches go in the list, and superblocks without a block in use freed, the
 // last first; or, on a reset, everything.
 #include "shaders/alloc_state.glsl"
 #include "shaders/alloc_scan.glsl"
@@ -8,16 +8,19 @@
 layout(local_size_x = kGroup) in;
 
 void place_events() {
-  uint groups = (set.patches + kGroup - 1u) / kGroup;
-  uint before = 0u;
-  for (uint first = 0u; first < groups; first += kGroup) {
-    uint group = first + gl_LocalInvocationID.x;
-    uint total;
-    uint place = scan_group(group < groups ? group_events[group] : 0u, total);
-    if (group < groups) group_events[group] = before + place;
-    before += total;
+  uint words = event_words();
+  uint run = (words + kGroup - 1u) / kGroup;
+  uint first = min(gl_LocalInvocationID.x * run, words);
+  uint end = min(first + run, words);
+  uint mine = 0u;
+  for (uint word = first; word < end; ++word) mine += uint(bitCount(event_count_before[words + word]));
+  uint total;
+  uint before = scan_group(mine, total);
+  for (uint word = first; word < end; ++word) {
+    event_count_before[word] = before;
+    before += uint(bitCount(event_count_before[words + word]));
   }
-  if (gl_LocalInvocationID.x == 0u) store.events = before;
+  if (gl_LocalInvocationID.x == 0u) store.events = total;
 }
 
 /// Returns how many superblocks it freed.
@@ -30,7 +33,7 @@ uint reclaim() {
     bool mine = nth < set.superblocks && superblocks[i].open != 0u && superblocks[i].in_use == 0u;
     if (nth < set.superblocks) superblocks[i].reclaimed = mine ? 1u : 0u;
     uint total;
-    uint place = scan_group(mine ? 1u : 0u, total);
+    uint place = scan_flag(mine, total);
     if (mine) {
       superblocks[i].open = 0u;
       superblocks[count + place].free_stack = i;

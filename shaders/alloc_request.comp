@@ -6,8 +6,6 @@
 
 layout(local_size_x = kGroup) in;
 
-shared uint group_count;
-
 void count_out(uint position, uint area) {
   atomicAdd(superblocks[superblock_of(position)].in_use, kNone);  // one fewer
   if (area != 0u) atomicAdd(store.allocated, 0u - area);
@@ -28,13 +26,11 @@ void take_part(uint patch_id, uint want, Record record, uint what, bool reset) {
     if ((what & kRegrow) != 0u) item.slot = atomicAdd(store.counted[2u * set.levels + number_of(sides)], 1u);
     items[set.patches + atomicAdd(store.events, 1u)] = item;
   } else {
-    atomicAdd(group_count, 1u);
+    atomicOr(event_count_before[event_words() + patch_id / 32u], 1u << (patch_id % 32u));
   }
 }
 
 void main() {
-  if (gl_LocalInvocationID.x == 0u) group_count = 0u;
-  barrier();
   bool reset = set.may_reset != 0u && store.wants_reset != 0u;
   uint i = gl_GlobalInvocationID.x;
   if (i < store.deferred && !reset) count_out(deferred_blocks[i].position, 0u);
@@ -44,6 +40,4 @@ void main() {
     uint what = classify(want, shape, reset);
     if (what != 0u) take_part(i, want, Record(records[i].position, shape), what, reset);
   }
-  barrier();
-  if (!kAtomicSlots && gl_LocalInvocationID.x == 0u) group_events[gl_WorkGroupID.x] = group_count;
 }

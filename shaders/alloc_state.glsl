@@ -9,8 +9,10 @@ layout(set = 0, binding = 3, std430) buffer Items { Item items[]; };
 layout(set = 0, binding = 4, std430) buffer Superblocks { Superblock superblocks[]; };
 layout(set = 0, binding = 5, std430) buffer Stacks { uint stacks[]; };
 layout(set = 0, binding = 6, std430) buffer Deferred { Record deferred_blocks[]; };
-layout(set = 0, binding = 7, std430) buffer Tiles { uint tile_counts[]; };  // by counter, level, tile
-layout(set = 0, binding = 8, std430) buffer Groups { uint group_events[]; };
+layout(set = 0, binding = 7, std430) buffer Tiles { uint tile_counts[]; };  // by tile, counter, level
+layout(set = 0, binding = 8, std430) buffer Events {
+  uint event_count_before[];  // by word of event bits, then the bits: one a patch that takes part in this frame
+};
 layout(set = 0, binding = 9, std430) buffer Segments { Segment segments[]; };
 layout(set = 0, binding = 10, std430) buffer Leftovers { uint leftovers[]; };
 layout(set = 0, binding = 11, std430) buffer Changes { Change changes[]; };
@@ -19,6 +21,9 @@ layout(set = 0, binding = 12, std430) buffer Reports { Report report; };
 /// Slots and list places are drawn from atomic counters, as [SAS] 4.2 does: faster, but the layout then
 /// depends on the order in which invocations happen to run.
 layout(constant_id = 0) const bool kAtomicSlots = false;
+
+/// Words of event bits.
+uint event_words() { return (set.patches + 31u) / 32u; }
 
 uint width_of(uint sides) { return (sides >> 4) & 15u; }
 uint height_of(uint sides) { return sides & 15u; }
@@ -54,7 +59,7 @@ uint row_at(uint superblock, uint width_log2, uint row) {
 uint rows_of(uint width_log2) { return 1u << (2u * set.max_log2 - width_log2); }
 
 uint tile_index(uint counter, uint level, uint tile) {
-  return (counter * set.levels + level) * set.tiles + tile;
+  return (tile * kCounters + counter) * set.levels + level;
 }
 
 /// The number of the i-th parent that a segment takes blocks from, as a position.

@@ -29,6 +29,7 @@ DeviceAllocator::DeviceAllocator(Device& device, const AllocatorSettings& settin
     : settings_(checked(settings)),
       store_(device, settings, patch_count, order),
       context_(device, "atlas memory"),
+      timer_(device, "atlas memory timer", 1),
       order_(order),
       report_{.free_area =
                   static_cast<std::uint32_t>(settings.atlas.area() >> (2 * settings.min_block_log2))} {
@@ -38,7 +39,13 @@ DeviceAllocator::DeviceAllocator(Device& device, const AllocatorSettings& settin
 
 const LayoutChange& DeviceAllocator::update(std::span<const BlockRequest> visible, bool may_reset) {
   upload(visible);
-  context_.run([&](const vk::raii::CommandBuffer& commands) { store_.record(commands, may_reset); });
+  context_.run([&](const vk::raii::CommandBuffer& commands) {
+    timer_.reset(commands);
+    timer_.begin(commands, "atlas memory");
+    store_.record(commands, may_reset);
+    timer_.end(commands);
+  });
+  for (const auto& [stage, took] : timer_.collect()) device_time_ += took;
   return collect();
 }
 

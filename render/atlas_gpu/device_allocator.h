@@ -3,6 +3,7 @@
 #include "render/atlas/allocator.h"
 #include "render/atlas/live_blocks.h"
 #include "render/atlas_gpu/device_store.h"
+#include "render/gpu/gpu_timer.h"
 #include "render/gpu/submit_context.h"
 
 #include <memory>
@@ -27,6 +28,9 @@ class DeviceAllocator final : public AtlasAllocator {
   /// The recorded frame's change, once it was waited for.
   const LayoutChange& collect();
 
+  /// What all update() calls took on the device; zero where it has no timestamps.
+  [[nodiscard]] Duration device_time() const { return device_time_; }
+
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return live_.blocks(); }
   [[nodiscard]] AtlasUsage usage() const override;
   [[nodiscard]] bool wants_reset() const override { return report_.wants_reset != 0; }
@@ -37,6 +41,8 @@ class DeviceAllocator final : public AtlasAllocator {
   AllocatorSettings settings_;
   DeviceStore store_;
   SubmitContext context_;
+  GpuTimer timer_;
+  Duration device_time_{};
   SlotOrder order_;
   std::vector<PatchId> shown_;  ///< whose wants the last update wrote
   alloc::Report report_;

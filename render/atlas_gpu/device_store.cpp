@@ -29,8 +29,7 @@ Constants constants_of(const AllocatorSettings& s, std::uint32_t patches) {
           .superblocks = superblocks,
           .high_superblocks = static_cast<std::uint32_t>(std::floor(s.high_water * superblocks)),
           .capacity = static_cast<std::uint32_t>(s.atlas.area() >> unit_log2),
-          .regrow_limit = static_cast<std::uint32_t>(high_water_texels(s) >> unit_log2),
-          .tiles = group_count(2 * std::uint64_t{patches}, kGroup) + 1};
+          .regrow_limit = static_cast<std::uint32_t>(high_water_texels(s) >> unit_log2)};
 }
 
 /// A level's stack never holds more than the atlas holds blocks of it.
@@ -67,9 +66,10 @@ DeviceStore::DeviceStore(Device& device, const AllocatorSettings& settings, std:
       stacks_(make(device, "stacks", sizeof(uint) * stack_total(settings), Residence::kDevice)),
       deferred_(make(device, "deferred", sizeof(Record) * patch_count, Residence::kDevice)),
       tiles_(make(device, "tiles",
-                  sizeof(uint) * kCounters * constants_.levels * std::size_t{constants_.tiles},
+                  sizeof(uint) * kCounters * constants_.levels *
+                      (group_count(2 * std::uint64_t{patch_count}, kGroup) + std::size_t{1}),
                   Residence::kDevice)),
-      groups_(make(device, "groups", sizeof(uint) * group_count(patch_count, kGroup), Residence::kDevice)),
+      events_(make(device, "events", 2 * sizeof(uint) * group_count(patch_count, 32), Residence::kDevice)),
       segments_(make(device, "segments", sizeof(Segment) * kMostSegments, Residence::kDevice)),
       leftovers_(make(device, "leftovers", sizeof(uint) * kMostLevels * kMostLeftovers, Residence::kDevice)),
       changes_(make(device, "changes", sizeof(Change) * patch_count, Residence::kReadback)),
@@ -77,7 +77,7 @@ DeviceStore::DeviceStore(Device& device, const AllocatorSettings& settings, std:
       layout_(device, "atlas memory", bindings()),
       sets_(device, "atlas memory", layout_) {
   const Buffer* buffers[] = {&store_, &wants_,  &records_,  &items_,     &superblocks_, &stacks_, &deferred_,
-                             &tiles_, &groups_, &segments_, &leftovers_, &changes_,     &report_};
+                             &tiles_, &events_, &segments_, &leftovers_, &changes_,     &report_};
   std::uint32_t binding = 0;
   for (const Buffer* buffer : buffers) sets_.write(0, binding++, *buffer);
   upload_initial_state(device, settings);
@@ -86,7 +86,7 @@ DeviceStore::DeviceStore(Device& device, const AllocatorSettings& settings, std:
   const bool ranked = order == SlotOrder::kRanked;
   add_pass(device, "request", shaders::alloc_request_comp, Extent::kPatches);
   add_pass(device, "reclaim", shaders::alloc_reclaim_comp, Extent::kOne);
-  if (ranked) add_pass(device, "list", shaders::alloc_list_comp, Extent::kPatches);
+  if (ranked) add_pass(device, "list", shaders::alloc_list_comp, Extent::kEventWords);
   if (ranked) add_pass(device, "rank", shaders::alloc_rank_comp, Extent::kItems);
   add_pass(device, "compact", shaders::alloc_compact_comp, Extent::kCompaction);
   if (ranked) add_pass(device, "count", shaders::alloc_count_comp, Extent::kKeys);
@@ -139,6 +139,7 @@ void DeviceStore::upload_initial_state(Device& device, const AllocatorSettings& 
     fill(store_, bytes(std::span(&store, 1)));
     fill(superblocks_, bytes(superblocks));
     commands.fillBuffer(records_.handle(), 0, VK_WHOLE_SIZE, 0);
+    commands.fillBuffer(events_.handle(), 0, VK_WHOLE_SIZE, 0);
     transfer_to_shaders(commands);
   });
 }
@@ -165,8 +166,11 @@ void DeviceStore::record(const vk::raii::CommandBuffer& commands, bool may_reset
       case Pass::Extent::kPatches:
         commands.dispatch(group_count(constants.patches, kGroup), 1, 1);
         break;
+      case Pass::Extent::kEventWords:
+        commands.dispatch(group_count(constants.patches, 32 * kGroup), 1, 1);
+        break;
       case Pass::Extent::kKeys:
-        commands.dispatch(kCounters * constants.levels, 1, 1);
+        commands.dispatch(group_count(kCounters * constants.levels, kKeyGroup), 1, 1);
         break;
       case Pass::Extent::kItems:
         commands.dispatchIndirect(store_.handle(), offsetof(Store, item_groups));

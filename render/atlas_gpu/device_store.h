@@ -52,7 +52,7 @@ class DeviceStore {
  private:
   struct Pass {
     Pipeline pipeline;
-    enum class Extent : std::uint8_t { kOne, kPatches, kKeys, kItems, kCompaction } extent;
+    enum class Extent : std::uint8_t { kOne, kPatches, kEventWords, kKeys, kItems, kCompaction } extent;
   };
 
   Buffer make(Device& device, const char* name, std::size_t bytes, Residence residence) const;
@@ -69,7 +69,7 @@ class DeviceStore {
   Buffer stacks_;
   Buffer deferred_;
   Buffer tiles_;
-  Buffer groups_;
+  Buffer events_;
   Buffer segments_;
   Buffer leftovers_;
   Buffer changes_;
