@@ -48,7 +48,7 @@ RelayUdp::Flow* RelayUdp::flow_of(const udp::endpoint& client) {
   }
   ++context_->stats.udp_flows;
   by_client_[client] = *id;
-  Flow& flow = flows_.emplace(*id, Flow{*id, client, EcnSocket(std::move(upstream)), {}}).first->second;
+  Flow& flow = flows_.emplace(*id, Flow{*id, client, RelaySocket(std::move(upstream)), {}}).first->second;
   wait_for_target(flow);
   return &flow;
 }

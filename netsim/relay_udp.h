@@ -1,7 +1,7 @@
 #pragma once
 
-#include "netsim/ecn_socket.h"
 #include "netsim/relay_context.h"
+#include "netsim/relay_socket.h"
 
 #include <map>
 #include <vector>
@@ -24,7 +24,7 @@ class RelayUdp {
   struct Flow {
     FlowId id{};
     udp::endpoint client;
-    EcnSocket upstream;
+    RelaySocket upstream;
     Time last_used{};
   };
   Flow* flow_of(const udp::endpoint& client);
@@ -36,7 +36,7 @@ class RelayUdp {
 
   asio::io_context& io_;
   RelayContext* context_ = nullptr;
-  EcnSocket listener_;
+  RelaySocket listener_;
   udp::endpoint target_;
   std::map<FlowId, Flow> flows_;
   std::map<udp::endpoint, FlowId> by_client_;

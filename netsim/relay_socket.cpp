@@ -1,4 +1,4 @@
-#include "netsim/ecn_socket.h"
+#include "netsim/relay_socket.h"
 
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -35,7 +35,7 @@ bool is_v4(const boost::asio::ip::address& address) {
 
 }  // namespace
 
-EcnSocket::EcnSocket(boost::asio::ip::udp::socket socket) : socket_(std::move(socket)) {
+RelaySocket::RelaySocket(boost::asio::ip::udp::socket socket) : socket_(std::move(socket)) {
   boost::system::error_code none;
   socket_.remote_endpoint(none);
   connected_ = !none;
@@ -48,8 +48,8 @@ EcnSocket::EcnSocket(boost::asio::ip::udp::socket socket) : socket_(std::move(so
   setsockopt(socket_.native_handle(), IPPROTO_IPV6, IPV6_RECVTCLASS, &yes, sizeof yes);
 }
 
-std::size_t EcnSocket::receive(std::span<std::byte> buffer, Endpoint& from, Ecn& ecn,
-                               boost::system::error_code& e) {
+std::size_t RelaySocket::receive(std::span<std::byte> buffer, Endpoint& from, Ecn& ecn,
+                                 boost::system::error_code& e) {
   Control control;
   iovec part{buffer.data(), buffer.size()};
   msghdr message{};
@@ -68,7 +68,7 @@ std::size_t EcnSocket::receive(std::span<std::byte> buffer, Endpoint& from, Ecn&
   return static_cast<std::size_t>(size);
 }
 
-void EcnSocket::send(ByteView octets, const Endpoint& to, Ecn ecn, boost::system::error_code& e) {
+void RelaySocket::send(ByteView octets, const Endpoint& to, Ecn ecn, boost::system::error_code& e) {
   Control control{};
   iovec part{const_cast<std::byte*>(octets.data()), octets.size()};
   msghdr message{};

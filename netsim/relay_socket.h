@@ -10,11 +10,11 @@ namespace atlaswire::netsim {
 
 /// A UDP socket, non-blocking, that receives and sends datagrams with the ECN bits of their IP headers, IPv4
 /// and IPv6 alike. The six bits beside them (DSCP) are not kept.
-class EcnSocket {
+class RelaySocket {
  public:
   using Endpoint = boost::asio::ip::udp::endpoint;
   /// `socket`: open, and connected or not. Where the kernel cannot tell the bits, all arrives as not capable.
-  explicit EcnSocket(boost::asio::ip::udp::socket socket);
+  explicit RelaySocket(boost::asio::ip::udp::socket socket);
 
   /// One datagram's octets; `from` and `ecn` are its sender and bits. `e`: would_block when none waits.
   std::size_t receive(std::span<std::byte> buffer, Endpoint& from, Ecn& ecn, boost::system::error_code& e);

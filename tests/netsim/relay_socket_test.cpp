@@ -1,4 +1,4 @@
-#include "netsim/ecn_socket.h"
+#include "netsim/relay_socket.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -28,9 +28,9 @@ void send_both_ways(const char* from, const char* to) {
   if (far_end.address().is_unspecified())
     far_end = {boost::asio::ip::make_address("127.0.0.1"), far_end.port()};
   near.connect(far_end);
-  EcnSocket client(std::move(near));
-  EcnSocket server(std::move(far));
-  const auto receive = [&](EcnSocket& socket, udp::endpoint& sender) {
+  RelaySocket client(std::move(near));
+  RelaySocket server(std::move(far));
+  const auto receive = [&](RelaySocket& socket, udp::endpoint& sender) {
     pollfd waiting{socket.socket().native_handle(), POLLIN, 0};
     EXPECT_EQ(::poll(&waiting, 1, 20'000), 1);
     std::byte buffer[16];
@@ -54,9 +54,9 @@ void send_both_ways(const char* from, const char* to) {
   EXPECT_EQ(e, boost::asio::error::would_block);
 }
 
-TEST(EcnSocket, KeepsTheBitsOverIpv4) { send_both_ways("127.0.0.1", "127.0.0.1"); }
-TEST(EcnSocket, KeepsTheBitsOverIpv6) { send_both_ways("::1", "::1"); }
-TEST(EcnSocket, KeepsTheBitsOfIpv4OnAnIpv6Socket) { send_both_ways("127.0.0.1", "::"); }
+TEST(RelaySocket, KeepsTheBitsOverIpv4) { send_both_ways("127.0.0.1", "127.0.0.1"); }
+TEST(RelaySocket, KeepsTheBitsOverIpv6) { send_both_ways("::1", "::1"); }
+TEST(RelaySocket, KeepsTheBitsOfIpv4OnAnIpv6Socket) { send_both_ways("127.0.0.1", "::"); }
 
 }  // namespace
 }  // namespace atlaswire::netsim
