@@ -48,6 +48,7 @@ Result<void> check(const wire::ClientHello& m) {
   rules.present(m.has_display(), "client_hello.display");
   rules.require(extent_in(m.display(), 16, kMaxSide), "client_hello.display");
   rules.require(in_range(m.vertical_fov(), 0.1, 3.0), "client_hello.vertical_fov");
+  rules.require(in_range(m.eye_separation(), 0, 1), "client_hello.eye_separation");
   rules.present(m.has_max_atlas(), "client_hello.max_atlas");
   rules.require(extent_in(m.max_atlas(), 64, kMaxSide), "client_hello.max_atlas");
   rules.require(m.meta_codecs_size() >= 1 && m.meta_codecs_size() <= 16, "client_hello.meta_codecs");

@@ -24,6 +24,7 @@ ClientHello from_wire(const wire::ClientHello& m) {
   out.client_name = m.client_name();
   out.display = from_wire(m.display());
   out.vertical_fov = m.vertical_fov();
+  out.eye_separation = m.eye_separation();
   out.max_picture = from_wire(m.max_atlas());
   out.meta_codecs.assign(m.meta_codecs().begin(), m.meta_codecs().end());
   if (m.has_wanted_atlas()) out.wanted_atlas = from_wire(m.wanted_atlas());
@@ -39,6 +40,7 @@ void to_wire(const ClientHello& m, wire::Envelope& envelope) {
   out.set_client_name(to_plain_text(m.client_name, 128));
   to_wire(m.display, *out.mutable_display());
   out.set_vertical_fov(m.vertical_fov);
+  out.set_eye_separation(m.eye_separation);
   to_wire(m.max_picture, *out.mutable_max_atlas());
   for (const auto codec : m.meta_codecs) out.add_meta_codecs(codec);
   if (m.wanted_atlas) to_wire(*m.wanted_atlas, *out.mutable_wanted_atlas());

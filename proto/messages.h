@@ -25,10 +25,11 @@ struct VersionRange {
 /// Client to server, first: who I am and what I can do. Every field is checked when parsed.
 struct ClientHello {
   VersionRange versions;
-  std::string client_name;                    ///< at most 128 octets, for logs
-  Extent2D display{960, 540};                 ///< pixels, sides 16..16384
-  double vertical_fov = 1.0471975512;         ///< radians, 0.1..3.0
-  Extent2D max_picture{4096, 4096};           ///< largest decodable picture, sides 64..16384
+  std::string client_name;             ///< at most 128 octets, for logs
+  Extent2D display{960, 540};          ///< pixels, sides 16..16384
+  double vertical_fov = 1.0471975512;  ///< radians, 0.1..3.0
+  double eye_separation = 0;           ///< metres, 0..1; above 0 two such displays are drawn, one an eye
+  Extent2D max_picture{4096, 4096};    ///< largest decodable picture, sides 64..16384
   std::vector<std::uint32_t> meta_codecs{1};  ///< codec::MetaCodecKind numbers, 1..16 of them
   /// Wishes; the server may give something else.
   std::optional<Extent2D> wanted_atlas;     ///< sides 64..16384

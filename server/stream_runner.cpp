@@ -99,6 +99,7 @@ ViewRequest StreamRunner::make_request() {
   ViewRequest request;
   request.camera = settings_.camera;
   request.camera.pose = view_->pose.pose;
+  request.hints.eye_separation = settings_.eye_separation;
   request.pose = view_->pose.id;
   request.pose_received = view_->received;
   request.cover = cover_.cover();

@@ -28,6 +28,7 @@ class StreamRunner {
     double max_fps = 15;
     CoverSettings cover;
     render::Camera camera;            ///< its pose is replaced by the client's
+    double eye_separation = 0;        ///< metres; above 0 the client's two eyes are beside the pose
     std::optional<BitRate> bit_rate;  ///< to hold at whatever frame rate comes about; nullopt: the stream's
     double encoder_fps = 15;          ///< the frame rate that the encoder was told
   };

@@ -37,6 +37,7 @@ ClientHello hello() {
   m.client_name = "atlas-client";
   m.display = {960, 540};
   m.vertical_fov = 1.0;
+  m.eye_separation = 0.064;
   m.max_picture = {2048, 4096};
   m.meta_codecs = {2, 1};
   m.wanted_atlas = Extent2D{1024, 512};
@@ -70,6 +71,7 @@ TEST(Messages, ClientHelloComesBackAsSent) {
   EXPECT_EQ(m.client_name, "atlas-client");
   EXPECT_EQ(m.display, (Extent2D{960, 540}));
   EXPECT_EQ(m.vertical_fov, 1.0);
+  EXPECT_EQ(m.eye_separation, 0.064);
   EXPECT_EQ(m.max_picture, (Extent2D{2048, 4096}));
   EXPECT_EQ(m.meta_codecs, (std::vector<std::uint32_t>{2, 1}));
   EXPECT_EQ(m.wanted_atlas, (Extent2D{1024, 512}));
@@ -214,6 +216,9 @@ TEST(ParseEnvelope, RefusesBadClientHellos) {
   check("client_hello.display", [](auto& m) { m.mutable_display()->set_height(16385); });
   for (const double fov : {0.0, -1.0, 3.2, kNaN, kInf}) {
     check("client_hello.vertical_fov", [fov](auto& m) { m.set_vertical_fov(fov); });
+  }
+  for (const double metres : {-0.001, 1.001, kNaN, kInf}) {
+    check("client_hello.eye_separation", [metres](auto& m) { m.set_eye_separation(metres); });
   }
   check("client_hello.max_atlas", [](auto& m) { m.clear_max_atlas(); });
   check("client_hello.meta_codecs", [](auto& m) { m.clear_meta_codecs(); });

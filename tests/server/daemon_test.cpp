@@ -41,6 +41,16 @@ TEST(Daemon, StreamsToTwoClientsAtOnce) {
   EXPECT_NE(a.hello()->udp_token, b.hello()->udp_token);
 }
 
+TEST(Daemon, RendersForBothEyesOfAStereoClient) {
+  FakeSource source;
+  RunningDaemon daemon(quick_settings(), source);
+  proto::ClientHello hello;
+  hello.eye_separation = 0.07;
+  RawClient stereo(daemon.port(), hello);
+  ASSERT_TRUE(stereo.run_until_frames(2, 20s));
+  EXPECT_EQ(source.watch.eye_separation, 0.07);
+}
+
 TEST(Daemon, RefusesBeyondItsCapacityAndServesTheRest) {
   FakeSource source;
   auto settings = quick_settings();

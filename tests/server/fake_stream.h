@@ -20,6 +20,7 @@ class FakeStream final : public FrameMaker {
     std::atomic<std::uint32_t> encoded{0};
     std::atomic<std::uint32_t> intra{0};
     std::atomic<bool> order_broken{false};
+    std::atomic<double> eye_separation{0};  ///< that the last frame was asked for
     std::atomic<std::uint32_t> fail_render_at{~0U};
     std::atomic<std::uint32_t> fail_encode_at{~0U};
   };
@@ -35,6 +36,7 @@ class FakeStream final : public FrameMaker {
     prepared.stamps.pose_received = request.pose_received;
     prepared.intra = request.restart || request.refresh || n % 5 == 0;
     prepared.rendered.frame = FrameId{n};
+    watch_.eye_separation = request.hints.eye_separation;
     ++watch_.rendered;
     if (prepared.intra) ++watch_.intra;
     return prepared;
