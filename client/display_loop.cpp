@@ -100,7 +100,7 @@ class DisplayLoop {
     return true;
   }
 
-  void keep_pictures(const render::Camera& camera) {
+  void keep_pictures(const render::Camera& head) {
     if (writer_ != nullptr && settings_.png_every != 0 && outcome_.displayed % settings_.png_every == 0) {
       writer_->write(settings_.png_folder / fmt::format("frame_{:06}.png", outcome_.displayed),
                      renderer_->read_back());
@@ -108,14 +108,12 @@ class DisplayLoop {
     if (!schedule_.take(draw_.start - *outcome_.first)) return;
     Sample sample{.frame = pair_.times.frame,
                   .display_index = outcome_.displayed,
-                  .camera = camera,
+                  .camera = head,
                   .view = {},
                   .atlas = pair_.picture};
-    if (settings_.at_server_pose && pair_.server_pose) {
-      sample.camera.pose = pair_.server_pose->pose;
-      renderer_->draw(sample.camera);
-    }
-    sample.view = renderer_->read_back();
+    if (settings_.at_server_pose && pair_.server_pose) sample.camera.pose = pair_.server_pose->pose;
+    sample.camera = renderer_->measured_camera(sample.camera);
+    sample.view = renderer_->draw_undistorted(sample.camera);
     outcome_.samples.push_back(std::move(sample));
   }
 

@@ -23,6 +23,8 @@ constexpr const char* kFooter = R"(Examples:
       as many frames a second as this machine can draw
   atlas-client --connect host:7400 --reference town.glb --at-server-pose
       quality with no latency at all: each sampled pair drawn at the pose it was shaded for
+  atlas-client --connect host:7400 --stereo --lens generic --size 960x1080 --fov 90 --out run --png-every 60
+      what a headset shows: both eyes side by side, corrected for its lenses
   atlas-client --config client.toml           options as TOML keys without dashes: connect = "host:7400"
 
 Exit codes: 0 done, 2 usage, 3 bad path or scene, 4 no Vulkan device, 6 cannot connect, 7 refused,
@@ -37,6 +39,7 @@ struct Raw {
   std::string wanted_atlas;
   std::string wanted_bit_rate;
   std::string log_level = "info";
+  std::string lens = "none";
   double wanted_frame_rate = 0;
   double wait_s = 5;
   double fov_degrees = 60;
@@ -63,6 +66,14 @@ void add_view_options(CLI::App& app, ClientSettings& s, Raw& raw) {
   group->add_option("--size", raw.size,
                     "Display WxH in pixels, 16x16..16384x16384: detail against drawing time");
   group->add_option("--fov", raw.fov_degrees, "Vertical field of view in degrees, 10..170");
+  group->add_flag("--stereo", s.stereo,
+                  "Draw twice, once an eye, side by side; --size is one eye's, and the server covers both");
+  group->add_option("--ipd", s.ipd, "Metres between the eyes with --stereo, 0.001..1");
+  group->add_option(
+      "--lens", raw.lens,
+      "Correct what is displayed for a headset's lens: none, generic, K1,K2, or K1,K2 of red, green "
+      "and blue in turn, each -10..10; what shows r half heights from the centre comes from "
+      "r (1 + K1 r^2 + K2 r^4)");
   group->add_option("--rate", s.rate, "Displayed frames a second, 0..1000; 0: as many as can be drawn");
   group->add_option("--pose-rate", s.pose_rate,
                     "Poses sent a second, 1..1000: less waiting at the server against uplink packets");
@@ -131,9 +142,14 @@ void apply_view(const Raw& raw, ClientSettings& s) {
   const auto fits = [](std::uint32_t side) { return side >= 16 && side <= 16'384; };
   if (!size || !fits(size->width) || !fits(size->height))
     refuse_option("--size", raw.size, "WxH, sides 16..16384");
+  if (s.stereo && size->width > 8192) refuse_option("--size", raw.size, "at most 8192 wide with --stereo");
   s.size = *size;
   demand_range("--fov", raw.fov_degrees, 10.0, 170.0, " degrees");
   s.vertical_fov = raw.fov_degrees * std::numbers::pi / 180;
+  demand_range("--ipd", s.ipd, 0.001, 1.0, " metres");
+  const auto lens = render::parse_lens(raw.lens);
+  if (!lens) refuse_option("--lens", raw.lens, "none, generic, K1,K2 or K1,K2,K1,K2,K1,K2, each -10..10");
+  s.lens = *lens;
   demand_range("--rate", s.rate, 0.0, 1000.0);
   demand_range("--pose-rate", s.pose_rate, 1.0, 1000.0);
   s.duration = parse_seconds("--duration", raw.duration_s, 1e6);

@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/time.h"
 #include "base/units.h"
+#include "render/image/lens_correction.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -20,6 +21,9 @@ struct ClientSettings {
   std::string path;  ///< CSV file or built-in name; empty: the built-in one of the server's scene
   Extent2D size{960, 540};
   double vertical_fov = 1.0471975511965976;      ///< radians
+  bool stereo = false;                           ///< two eyes, each with `size` pixels, side by side
+  double ipd = 0.064;                            ///< metres between the eyes, with `stereo`
+  render::LensCorrection lens;                   ///< of each eye
   double rate = 60;                              ///< displayed frames a second; 0: as many as can be
   double pose_rate = 60;                         ///< tracker samples sent a second
   Duration duration = std::chrono::seconds(10);  ///< from the first displayed pair; 0: until interrupted

@@ -65,6 +65,7 @@ class Viewer {
     hello.client_name = "atlas-client";
     hello.display = settings_.size;
     hello.vertical_fov = settings_.vertical_fov;
+    if (settings_.stereo) hello.eye_separation = settings_.ipd;
     hello.max_picture = {16'384, 16'384};
     hello.meta_codecs = {static_cast<std::uint32_t>(codec::MetaCodecKind::kPlain)};
     hello.wanted_atlas = settings_.wanted_atlas;
@@ -80,7 +81,8 @@ class Viewer {
     spdlog::info("session {} streams {}: atlas {}x{}, path {}", value(answer_->session), stream.scene,
                  stream.atlas.width, stream.atlas.height, motion_.name());
     const DisplaySettings display = display_settings(stream);
-    PairRenderer renderer(*device_, stream, display.camera);
+    PairRenderer renderer(*device_, stream, display.camera,
+                          {.ipd = settings_.stereo ? settings_.ipd : 0, .lens = settings_.lens});
     std::optional<PictureWriter> writer;
     if (settings_.png_every != 0) writer.emplace();
     DecodeThread decoder(stream, {.threads = settings_.decoder_threads}, arrivals_, pairs_,

@@ -2,6 +2,7 @@
 
 #include "client/decode_thread.h"
 #include "client/pair_renderer.h"
+#include "render/image/metrics.h"
 #include "render/passes/tonemap.h"
 #include "tests/client/synthetic_pair.h"
 #include "tests/render/gpu/gpu_fixture.h"
@@ -70,6 +71,44 @@ TEST_F(DisplayLoopTest, RendererWarmsUpForEveryClassOfPatch) {
   stream.has_coverage = stream.alpha_mask = stream.alpha_blend = stream.double_sided = true;
   PairRenderer renderer(device(), stream, settings().camera);
   EXPECT_EQ(renderer.read_back().at(32, 32)[3], 255);
+}
+
+TEST_F(DisplayLoopTest, ShowsBothEyesSideBySide) {
+  const render::Camera head = settings().camera;
+  PairRenderer mono(device(), square_stream(), head);
+  PairRenderer stereo(device(), square_stream(), head, {.ipd = 0.4});
+  mono.show(pair_of(180));
+  stereo.show(pair_of(180));
+  stereo.draw(head);
+  const render::Picture both = stereo.read_back();
+  ASSERT_EQ(both.extent, (Extent2D{128, 64}));
+  for (const std::uint32_t eye : {0U, 1U}) {
+    render::Camera camera = head;
+    camera.pose.position.x = eye == 0 ? -0.2 : 0.2;
+    mono.draw(camera);
+    const render::Picture& one = mono.read_back();
+    for (std::uint32_t y = 0; y < 64; ++y) {
+      for (std::uint32_t x = 0; x < 64; ++x) ASSERT_EQ(both.at(64 * eye + x, y), one.at(x, y));
+    }
+  }
+}
+
+TEST_F(DisplayLoopTest, MeasuresTheLeftEyeThroughNoLens) {
+  const Headset headset{.ipd = 0.4, .lens = render::parse_lens("0.5,0.5").value()};
+  const render::Camera head = settings().camera;
+  PairRenderer renderer(device(), square_stream(), head, headset);
+  renderer.show(pair_of(180));
+  renderer.draw(head);
+  const render::Picture displayed = renderer.read_back();
+  const render::Camera eye = renderer.measured_camera(head);
+  EXPECT_NEAR(eye.pose.position.x, -0.2, 1e-12);
+  const render::Picture measured = renderer.draw_undistorted(eye);
+  PairRenderer mono(device(), square_stream(), head);
+  mono.show(pair_of(180));
+  mono.draw(eye);
+  EXPECT_EQ(measured, mono.read_back());
+  EXPECT_EQ(renderer.read_back(), displayed) << "measuring changes nothing on the display";
+  EXPECT_GT(render::hole_share(displayed), render::hole_share(measured)) << "the lens makes it smaller";
 }
 
 TEST_F(DisplayLoopTest, RedrawsOnePairForManyPoses) {

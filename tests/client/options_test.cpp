@@ -36,6 +36,8 @@ TEST(ClientOptions, HaveWorkingDefaults) {
   EXPECT_NEAR(s.vertical_fov, 1.047198, 1e-6);
   EXPECT_EQ(s.duration, std::chrono::seconds(10));
   EXPECT_FALSE(s.wanted_atlas);
+  EXPECT_FALSE(s.stereo);
+  EXPECT_EQ(s.lens, render::LensCorrection{});
 }
 
 TEST(ClientOptions, ReadEverythingFromTheCommandLine) {
@@ -89,6 +91,21 @@ TEST(ClientOptions, ReadAConfigFile) {
   std::filesystem::remove(file);
 }
 
+TEST(ClientOptions, ReadTheHeadset) {
+  const ClientSettings s = parse({"--stereo", "--ipd", "0.07", "--lens", "generic"}).settings;
+  EXPECT_TRUE(s.stereo);
+  EXPECT_EQ(s.ipd, 0.07);
+  EXPECT_EQ(s.lens, render::parse_lens("generic").value());
+  EXPECT_EQ(parse({"--lens", "-0.1,0.2"}).settings.lens, render::parse_lens("-0.1,0.2").value());
+  const auto file = std::filesystem::temp_directory_path() / "atlaswire_client_headset_test.toml";
+  std::ofstream(file) << "stereo = true\nipd = 0.06\nlens = \"0.2,0.1\"\n";
+  const ClientSettings from_file = parse({"--config", file.c_str()}).settings;
+  EXPECT_TRUE(from_file.stereo);
+  EXPECT_EQ(from_file.ipd, 0.06);
+  EXPECT_EQ(from_file.lens, render::parse_lens("0.2,0.1").value());
+  std::filesystem::remove(file);
+}
+
 TEST(ClientOptions, RefuseWhatCannotBe) {
   expect_refused({"--connect", "nowhere"}, "HOST:PORT");
   expect_refused({"--connect", "host:0"}, "HOST:PORT");
@@ -97,6 +114,9 @@ TEST(ClientOptions, RefuseWhatCannotBe) {
   expect_refused({"--size", "wide"}, "--size wide");
   expect_refused({"--fov", "180"}, "10..170");
   expect_refused({"--rate", "nan"}, "--rate");
+  expect_refused({"--stereo", "--ipd", "0"}, "--ipd");
+  expect_refused({"--stereo", "--size", "9000x100"}, "8192");
+  expect_refused({"--lens", "fisheye"}, "--lens fisheye: must be none, generic");
   expect_refused({"--duration", "-1"}, "--duration");
   expect_refused({"--warm-up", "20"}, "less than --duration");
   expect_refused({"--png-every", "3"}, "without --out");
