@@ -40,7 +40,7 @@ enum class WarpKind : std::uint8_t {
 /// How hard kIterative searches.
 struct IterativeSettings {
   std::uint32_t iterations = 8;  ///< from each start, >= 1
-  std::uint32_t starts = 4;      ///< along the pixel's epipolar line, >= 2
+  std::uint32_t starts = 3;      ///< along the pixel's epipolar line, >= 2
 };
 
 /// Shows an ordinary picture from other poses: the display stage of the methods that [SAS] compares with. One
