@@ -119,11 +119,14 @@ class TomlReader {
     return error_;
   }
 
- private:
+ protected:
+  /// Nullptr: no such key. Asked for, it is known to `finish`.
   const toml::node* find(const char* key) {
     known_.emplace_back(key);
     return table_.get(key);
   }
+
+ private:
   static std::string text(double v) {
     std::string s = std::to_string(v);
     s.erase(s.find_last_not_of('0') + 1);

@@ -1,0 +1,33 @@
+# Writes OUT, a header with the commit that SOURCE is built at, but only when it changed. Run as a script on every
+# build: cmake -DSOURCE=.. -DOUT=.. -P BuildCommit.cmake
+# "1a2b3c4d5e6f", "1a2b3c4d5e6f+dirty.9f8e7d6c" (a hash of what differs in compiled folders), or "unknown".
+set(rooms base cmake codec proto netsim render shaders server client lab CMakeLists.txt)
+set(commit unknown)
+execute_process(COMMAND git -C ${SOURCE} rev-parse --short=12 HEAD
+  OUTPUT_VARIABLE head OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
+if(NOT failed)
+  set(commit ${head})
+  execute_process(COMMAND git -C ${SOURCE} diff HEAD -- ${rooms} OUTPUT_VARIABLE changes ERROR_QUIET)
+  execute_process(COMMAND git -C ${SOURCE} ls-files --others --exclude-standard -- ${rooms}
+    OUTPUT_VARIABLE added OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(added)
+    string(REPLACE "\n" ";" files "${added}")
+    foreach(file IN LISTS files)
+      file(SHA1 ${SOURCE}/${file} hash)
+      string(APPEND changes "${file} ${hash}\n")
+    endforeach()
+  endif()
+  if(changes)
+    string(SHA1 hash "${changes}")
+    string(SUBSTRING ${hash} 0 8 hash)
+    string(APPEND commit "+dirty.${hash}")
+  endif()
+endif()
+set(text "#define AW_BUILD_COMMIT \"${commit}\"\n")
+set(old "")
+if(EXISTS ${OUT})
+  file(READ ${OUT} old)
+endif()
+if(NOT old STREQUAL text)
+  file(WRITE ${OUT} "${text}")
+endif()
