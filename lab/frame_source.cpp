@@ -103,7 +103,7 @@ void FrameSource::add_timings(std::vector<Figure>& timings) const {
   const auto add = [&](const char* name, Duration sum) {
     timings.push_back({name, mean(to_ms(sum), frames_)});
   };
-  add("server_ms", making_ + encoding_);
+  add("server_frame_ms", making_ + encoding_);
   add("visibility_ms", render_.visibility);
   add("allocation_ms", render_.allocation);
   add("shading_ms", render_.shading);
