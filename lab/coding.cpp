@@ -14,6 +14,7 @@ codec::VideoEncoderSettings video_settings(const PointSettings& settings) {
   video.frame_rate = settings.server_hz;
   video.preset = settings.preset;
   video.intra_interval = settings.intra_interval;
+  video.threads = 1;  // x264's rate control of parallel slices depends on which is done first
   video.encoder = video_coding(settings) == codec::VideoCoding::kRaw ? "raw" : "libx264";
   if (settings.qp >= 0) {
     video.bit_rate = {};

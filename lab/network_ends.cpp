@@ -12,6 +12,10 @@
 namespace atlaswire::lab {
 namespace {
 
+/// Frames before the path's start: enough for one to be on display there on the slowest profile that ships,
+/// and for rate control to have seen some.
+constexpr Duration kSettling = std::chrono::seconds(1);
+
 constexpr proto::PeerAddress kClientAddress = proto::ipv4_address({10, 0, 0, 2}, 40'000);
 
 /// What a daemon draws from a cryptographic generator comes from the point's seed here: runs repeat.
@@ -106,7 +110,7 @@ void ServerEnd::react(Time now) {
   }
   const auto& pose = session_.newest_pose();
   if (!pose) return;
-  if (!next_frame_) next_frame_ = now;
+  if (!next_frame_) next_frame_ = std::max(now, zero_ - kSettling);
   if (now < *next_frame_) return;
   next_frame_ = *next_frame_ + interval_;
   if (!session_.is_congested()) make_frame(*pose, now);

@@ -10,8 +10,8 @@
 namespace atlaswire::lab {
 namespace {
 
-/// The path starts here; sessions before it, so that the handshake and the first frame are through in time on
-/// the slowest profile that ships.
+/// The path starts here; sessions before it, so that the handshake is through in time on the slowest
+/// profile that ships.
 constexpr Time kZero = Time{} + std::chrono::seconds(100);
 constexpr Duration kLead = std::chrono::seconds(3);
 

@@ -16,7 +16,7 @@ struct ViewHeader {
   double nearest = 0;  ///< metres; as render::RenderedView
 };
 
-/// 84 octets: frame u32; position 3 x f64, orientation (x, y, z, w) 4 x f64, vertical field of view f64,
+/// 80 octets: frame u32; position 3 x f64, orientation (x, y, z, w) 4 x f64, vertical field of view f64,
 /// width and height u16, near plane and `nearest` f32; big-endian.
 ByteBuffer write_view_header(const ViewHeader& header);
 /// nullopt for other lengths.
