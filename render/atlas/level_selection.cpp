@@ -85,8 +85,7 @@ BlockRequest round_level(PatchId patch, std::int32_t area, std::int32_t aspect, 
           .transposed = aspect_log2 < 0};
 }
 
-LevelSelector::LevelSelector(const LevelSettings& settings, std::uint32_t patch_count)
-    : settings_(settings), gathered_(std::size_t{patch_count} + 1), levels_(patch_count) {
+LevelRange level_range(const LevelSettings& settings) {
   const AllocatorSettings& a = settings.allocator;
   if (!(settings.target_fill > 0 && settings.target_fill <= 1) ||
       !(settings.max_oversampling >= 1 && settings.max_oversampling <= 65536) ||
@@ -96,13 +95,24 @@ LevelSelector::LevelSelector(const LevelSettings& settings, std::uint32_t patch_
                        "level selection: fill must be in (0, 1], oversampling in [1, 65536], hysteresis in "
                        "[0, 1] octaves, block sides at most 4096");
   }
-  lowest_step_ =
+  const auto lowest_step =
       -static_cast<std::int32_t>(std::floor(std::log2(settings.max_oversampling) * kStepsPerOctave));
-  lowest_bin_ = smallest(a) * kStepsPerOctave + lowest_step_;
-  highest_step_ = highest_bin(a) - smallest(a) * kStepsPerOctave;
-  margin_ = static_cast<std::int32_t>(std::lround(settings.hysteresis * kOctave));
-  target_ = static_cast<std::uint64_t>(settings.target_fill * static_cast<double>(a.atlas.area()));
-  histogram_.resize(static_cast<std::size_t>(highest_bin(a) - lowest_bin_ + 1));
+  return {.smallest = smallest(a),
+          .largest = largest(a),
+          .lowest_bin = smallest(a) * kStepsPerOctave + lowest_step,
+          .highest_bin = highest_bin(a),
+          .lowest_step = lowest_step,
+          .highest_step = highest_bin(a) - smallest(a) * kStepsPerOctave,
+          .margin = static_cast<std::int32_t>(std::lround(settings.hysteresis * kOctave)),
+          .target = static_cast<std::uint64_t>(settings.target_fill * static_cast<double>(a.atlas.area()))};
+}
+
+LevelSelector::LevelSelector(const LevelSettings& settings, std::uint32_t patch_count)
+    : settings_(settings),
+      range_(level_range(settings)),
+      gathered_(std::size_t{patch_count} + 1),
+      levels_(patch_count) {
+  histogram_.resize(static_cast<std::size_t>(range_.highest_bin - range_.lowest_bin + 1));
 }
 
 const LevelStats& LevelSelector::select(std::span<const std::uint32_t> packed,
@@ -114,7 +124,7 @@ const LevelStats& LevelSelector::select(std::span<const std::uint32_t> packed,
   if (found_ != 0) choose_bias();
   stats_.bias = static_cast<double>(step_) / kStepsPerOctave;
   assign(out);
-  if (stats_.texels > target_) demote(out);
+  if (stats_.texels > range_.target) demote(out);
   return stats_;
 }
 
@@ -132,8 +142,8 @@ void LevelSelector::scan(std::span<const std::uint32_t> packed) {
   std::ranges::fill(histogram_, 0U);
   const std::int32_t high = highest_bin(settings_.allocator);
   for (const Visible& v : visible()) {
-    const std::int32_t bin = std::clamp(packed_area(v.packed) >> 5, lowest_bin_, high);
-    ++histogram_[static_cast<std::size_t>(bin - lowest_bin_)];
+    const std::int32_t bin = std::clamp(packed_area(v.packed) >> 5, range_.lowest_bin, high);
+    ++histogram_[static_cast<std::size_t>(bin - range_.lowest_bin)];
   }
 }
 
@@ -142,7 +152,7 @@ void LevelSelector::scan(std::span<const std::uint32_t> packed) {
 std::uint64_t LevelSelector::predicted(std::int32_t bias_step) const {
   std::uint64_t texels = 0;
   for (std::size_t i = 0; i < histogram_.size(); ++i) {
-    const std::int32_t area = (lowest_bin_ + static_cast<std::int32_t>(i) - bias_step) * kStep;
+    const std::int32_t area = (range_.lowest_bin + static_cast<std::int32_t>(i) - bias_step) * kStep;
     texels += std::uint64_t{histogram_[i]} << rounded_area(area, settings_.allocator);
   }
   return texels;
@@ -155,17 +165,18 @@ void LevelSelector::choose_bias() {
   double ideal = 0;
   double fixed = 0;
   for (std::size_t i = 0; i < histogram_.size(); ++i) {
-    const double centre = (lowest_bin_ + static_cast<double>(i) + 0.5) / kStepsPerOctave;
+    const double centre = (range_.lowest_bin + static_cast<double>(i) + 0.5) / kStepsPerOctave;
     const double area = std::clamp(std::exp2(centre), floor_area, ceiling) * histogram_[i];
     ideal += area;
     if (centre <= smallest(settings_.allocator)) fixed += area;
   }
-  stats_.one_step_bias = memory_bias(ideal, fixed, static_cast<double>(target_));
+  stats_.one_step_bias = memory_bias(ideal, fixed, static_cast<double>(range_.target));
 
-  auto fits = static_cast<std::int32_t>(std::clamp(std::round(stats_.one_step_bias * kStepsPerOctave),
-                                                   double{1} * lowest_step_, double{1} * highest_step_));
-  while (fits < highest_step_ && predicted(fits) > target_) ++fits;
-  while (fits > lowest_step_ && predicted(fits - 1) <= target_) --fits;
+  auto fits =
+      static_cast<std::int32_t>(std::clamp(std::round(stats_.one_step_bias * kStepsPerOctave),
+                                           double{1} * range_.lowest_step, double{1} * range_.highest_step));
+  while (fits < range_.highest_step && predicted(fits) > range_.target) ++fits;
+  while (fits > range_.lowest_step && predicted(fits - 1) <= range_.target) --fits;
 
   if (!has_bias_ || fits > step_) {
     step_ = fits;
@@ -198,7 +209,7 @@ void LevelSelector::assign(std::vector<BlockRequest>& out) {
 /// Takes hysteresis back, in patch order, from patches it keeps too large, until memory suffices.
 void LevelSelector::demote(std::vector<BlockRequest>& out) {
   const std::int32_t cap = highest_bin(settings_.allocator) * kStep;
-  for (std::size_t i = 0; i < out.size() && stats_.texels > target_; ++i) {
+  for (std::size_t i = 0; i < out.size() && stats_.texels > range_.target; ++i) {
     const Visible& v = gathered_[i];
     const std::int32_t area = std::min(packed_area(v.packed), cap) - step_ * kStep;
     const auto request = round_level(out[i].patch, area, packed_aspect(v.packed), settings_.allocator);
@@ -215,11 +226,11 @@ bool LevelSelector::keeps(const BlockRequest& previous, std::int32_t area, std::
   const AllocatorSettings& s = settings_.allocator;
   const std::int32_t area_log2 = previous.width_log2 + previous.height_log2;
   const std::int32_t legal = std::clamp(area, smallest(s) * kOctave, largest(s) * kOctave);
-  if (std::abs(legal - area_log2 * kOctave) > kOctave / 2 + margin_) return false;
+  if (std::abs(legal - area_log2 * kOctave) > kOctave / 2 + range_.margin) return false;
   const std::int32_t limit = aspect_limit(area_log2, s) * kOctave;
   std::int32_t aspect_log2 = previous.width_log2 - previous.height_log2;
   if (previous.transposed) aspect_log2 = -aspect_log2;
-  return std::abs(std::clamp(aspect, -limit, limit) - aspect_log2 * kOctave) <= kOctave + 2 * margin_;
+  return std::abs(std::clamp(aspect, -limit, limit) - aspect_log2 * kOctave) <= kOctave + 2 * range_.margin;
 }
 
 }  // namespace atlaswire::render

@@ -36,6 +36,21 @@ struct LevelSettings {
   double hysteresis = 0.25;       ///< 0..1 octaves past the rounding boundary before a level changes
 };
 
+/// Level settings as integers: what selection works with, on the host and on the device.
+struct LevelRange {
+  std::int32_t smallest;  ///< log2 of the smallest and largest block's area
+  std::int32_t largest;
+  std::int32_t lowest_bin;  ///< of the histogram: below it all areas act alike
+  std::int32_t highest_bin;
+  std::int32_t lowest_step;   ///< bias in eighths when the atlas has room
+  std::int32_t highest_step;  ///< here every block is smallest
+  std::int32_t margin;        ///< hysteresis in 256ths
+  std::uint64_t target;       ///< texels
+};
+
+/// Throws ProgramError for settings out of range.
+LevelRange level_range(const LevelSettings& settings);
+
 /// What one selection did.
 struct LevelStats {
   double bias = 0;            ///< octaves of area, in eighths; below 0 the atlas has room to spare
@@ -71,11 +86,7 @@ class LevelSelector {
   [[nodiscard]] bool keeps(const BlockRequest& previous, std::int32_t area, std::int32_t aspect) const;
 
   LevelSettings settings_;
-  std::int32_t lowest_bin_;               ///< of the histogram: below it all areas act alike
-  std::int32_t lowest_step_;              ///< bias in eighths when the atlas has room
-  std::int32_t highest_step_;             ///< here every block is smallest
-  std::int32_t margin_;                   ///< hysteresis in 256ths
-  std::uint64_t target_;                  ///< texels
+  LevelRange range_;
   std::vector<std::uint32_t> histogram_;  ///< visible patches by area, in eighths of an octave
   std::vector<Visible> gathered_;         ///< room for every patch
   std::size_t found_ = 0;                 ///< how many of them count

@@ -25,17 +25,14 @@ Block block_of(const alloc::Change& change) {
 }  // namespace
 
 DeviceAllocator::DeviceAllocator(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count,
-                                 SlotOrder order)
+                                 SlotOrder order, Residence wants)
     : settings_(checked(settings)),
-      store_(device, settings, patch_count, order),
+      store_(device, settings, patch_count, order, wants),
       context_(device, "atlas memory"),
       timer_(device, "atlas memory timer", 1),
       order_(order),
       report_{.free_area =
-                  static_cast<std::uint32_t>(settings.atlas.area() >> (2 * settings.min_block_log2))} {
-  std::ranges::fill(wants().mapped<std::uint32_t>(), 0U);
-  wants().flush();
-}
+                  static_cast<std::uint32_t>(settings.atlas.area() >> (2 * settings.min_block_log2))} {}
 
 const LayoutChange& DeviceAllocator::update(std::span<const BlockRequest> visible, bool may_reset) {
   upload(visible);
@@ -51,6 +48,7 @@ const LayoutChange& DeviceAllocator::update(std::span<const BlockRequest> visibl
 
 void DeviceAllocator::upload(std::span<const BlockRequest> visible) {
   const auto words = wants().mapped<std::uint32_t>();
+  AW_ASSERT(visible.empty() || !words.empty());
   for (const PatchId patch : shown_) words[value(patch)] = 0;
   shown_.clear();
   for (const BlockRequest& request : visible) {

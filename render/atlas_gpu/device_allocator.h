@@ -16,10 +16,12 @@ namespace atlaswire::render {
 /// record() into a submission that also makes the wants, and collect() when that is done.
 class DeviceAllocator final : public AtlasAllocator {
  public:
-  /// Throws ProgramError for settings that do not fit together or the device.
+  /// Throws ProgramError for settings that do not fit together or the device. `wants`: kDevice where earlier
+  /// passes write them.
   DeviceAllocator(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count,
-                  SlotOrder order = SlotOrder::kRanked);
+                  SlotOrder order = SlotOrder::kRanked, Residence wants = Residence::kUpload);
 
+  /// Only with wants on the host.
   const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) override;
 
   /// What each patch wants, for an earlier pass to write (alloc_layout.h); levels must be legal.

@@ -54,11 +54,11 @@ std::vector<Binding> bindings() {
 }  // namespace
 
 DeviceStore::DeviceStore(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count,
-                         SlotOrder order)
+                         SlotOrder order, Residence wants)
     : constants_(constants_of(settings, patch_count)),
       order_(order),
       store_(make(device, "store", sizeof(Store), Residence::kDevice)),
-      wants_(make(device, "wants", sizeof(uint) * patch_count, Residence::kUpload)),
+      wants_(make(device, "wants", sizeof(uint) * patch_count, wants)),
       records_(make(device, "records", sizeof(Record) * patch_count, Residence::kDevice)),
       items_(make(device, "items", sizeof(Item) * 2 * patch_count, Residence::kDevice)),
       superblocks_(
@@ -138,6 +138,7 @@ void DeviceStore::upload_initial_state(Device& device, const AllocatorSettings& 
     };
     fill(store_, bytes(std::span(&store, 1)));
     fill(superblocks_, bytes(superblocks));
+    commands.fillBuffer(wants_.handle(), 0, VK_WHOLE_SIZE, 0);
     commands.fillBuffer(records_.handle(), 0, VK_WHOLE_SIZE, 0);
     commands.fillBuffer(events_.handle(), 0, VK_WHOLE_SIZE, 0);
     transfer_to_shaders(commands);

@@ -36,9 +36,11 @@ class DeviceStore {
  public:
   /// Settings are checked (check_allocator_settings). Throws ProgramError if the device's buffers are too
   /// small for such an atlas.
-  DeviceStore(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count, SlotOrder order);
+  DeviceStore(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count, SlotOrder order,
+              Residence wants);
 
-  /// What each patch wants (alloc_layout.h): written by the host or by an earlier pass before record().
+  /// What each patch wants (alloc_layout.h), hidden at first: written by the host (if its residence is
+  /// kUpload) or by an earlier pass before record().
   [[nodiscard]] const Buffer& wants() const { return wants_; }
 
   /// Records one frame, whose wants are visible to shaders. `may_reset`: as AtlasAllocator::update has it.
