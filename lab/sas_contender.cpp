@@ -20,6 +20,7 @@ server::StreamSettings stream_settings(const PointSettings& point) {
   server::StreamSettings s;
   s.method = point.method;
   s.render.atlas = point.atlas;
+  s.render.allocator.superblock_log2 = render::suited_superblock_log2(point.atlas);
   s.render.fov_scale = point.fov_scale;
   s.render.id_scale = point.id_scale;
   s.render.max_views = point.foresight ? std::max(point.views, kForeseenViews) : point.views;
