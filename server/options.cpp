@@ -36,6 +36,7 @@ struct Raw {
   std::string atlas = "1024x1024";
   std::string bit_rate = "10M";
   std::string cover = "auto";
+  std::string allocator = "auto";
   std::string mirror;
   std::string log_level = "info";
   double prediction_step_ms = 1000.0 / 30;
@@ -79,6 +80,13 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
                     "Largest time between predicted views, ms, 1..1000");
   group->add_option("--max-oversampling", render.max_oversampling,
                     "Texels a pixel may get while the atlas has room, 1..8: sharper against more shading");
+  group->add_option("--allocator", raw.allocator,
+                    "Who lays the atlas out: device, sequential (on the host), or auto: the device unless it "
+                    "is a CPU; the layout is the same");
+  group->add_option(
+      "--level-hysteresis", render.level_hysteresis,
+      "Octaves past the border between two block sizes before a block changes, 0..1: blocks that "
+      "stay against the best size for each");
   group->add_option("--reshade-interval", render.reshade_interval,
                     "Shade each block at least every N-th frame, 1..60: speed against stale reflections");
   group->add_option(
@@ -155,6 +163,13 @@ void apply_cover(const std::string& text, CoverSettings& cover) {
   cover.fixed = from_seconds(ms / 1000);
 }
 
+render::AllocatorKind parse_allocator(const std::string& text) {
+  if (text == "device") return render::AllocatorKind::kDevice;
+  if (text == "sequential") return render::AllocatorKind::kSequential;
+  if (text != "auto") refuse_option("--allocator", text, "auto, device or sequential");
+  return render::AllocatorKind::kAuto;
+}
+
 void apply_picture(const Raw& raw, StreamSettings& s) {
   auto& render = s.render;
   const auto atlas = parse_extent(raw.atlas);
@@ -165,12 +180,16 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   render.atlas = *atlas;
   render.allocator.atlas = *atlas;
   render.allocator.superblock_log2 = render::suited_superblock_log2(*atlas);
+  // Methods without an atlas are there to compare with: sessions have no way to send their frames.
+  if (s.method != "sas") refuse_option("--method", s.method, "sas");
   demand_range("--fov-scale", render.fov_scale, 1.0, 2.0);
   demand_range("--id-scale", render.id_scale, 0.25, 2.0);
   demand_range("--views", render.max_views, 1U, 16U);
   demand_range("--prediction-step", raw.prediction_step_ms, 1.0, 1000.0, " ms");
   render.prediction_step = from_seconds(raw.prediction_step_ms / 1000);
   demand_range("--max-oversampling", render.max_oversampling, 1.0, 8.0);
+  render.allocator_kind = parse_allocator(raw.allocator);
+  demand_range("--level-hysteresis", render.level_hysteresis, 0.0, 1.0);
   demand_range("--reshade-interval", render.reshade_interval, 1U, 60U);
   if (s.grid_bits != 0) demand_range("--grid-bits", s.grid_bits, 8U, 20U);
   apply_cover(raw.cover, s.cover);

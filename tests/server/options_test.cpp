@@ -42,10 +42,30 @@ TEST(Options, DefaultsServeTheAtriumOnLoopback) {
 }
 
 TEST(Options, MapEveryKindOfValue) {
-  const auto s = parse({"--scene",       "a.glb", "--atlas", "2048x1024", "--bitrate",          "2.5M",
-                        "--fps",         "30",    "--cover", "40",        "--mirror",           "[::1]:5004",
-                        "--max-runtime", "1.5",   "--port",  "0",         "--reshade-interval", "4",
-                        "--log-level",   "debug"})
+  const auto s = parse({"--scene",
+                        "a.glb",
+                        "--atlas",
+                        "2048x1024",
+                        "--bitrate",
+                        "2.5M",
+                        "--fps",
+                        "30",
+                        "--cover",
+                        "40",
+                        "--mirror",
+                        "[::1]:5004",
+                        "--max-runtime",
+                        "1.5",
+                        "--port",
+                        "0",
+                        "--reshade-interval",
+                        "4",
+                        "--allocator",
+                        "device",
+                        "--level-hysteresis",
+                        "0.5",
+                        "--log-level",
+                        "debug"})
                      .settings;
   EXPECT_EQ(s.scene, "a.glb");
   EXPECT_EQ(s.stream.render.atlas, (Extent2D{2048, 1024}));
@@ -60,6 +80,8 @@ TEST(Options, MapEveryKindOfValue) {
   EXPECT_EQ(s.max_runtime, Duration{1500ms});
   EXPECT_EQ(s.port, 0);
   EXPECT_EQ(s.stream.render.reshade_interval, 4U);
+  EXPECT_EQ(s.stream.render.allocator_kind, render::AllocatorKind::kDevice);
+  EXPECT_EQ(s.stream.render.level_hysteresis, 0.5);
   EXPECT_EQ(s.log.level, spdlog::level::debug);
 }
 
@@ -70,6 +92,8 @@ TEST(Options, RefusalsNameOptionValueAndCure) {
   EXPECT_THAT(refusal({"--cover", "nan"}), HasSubstr("--cover nan"));
   EXPECT_THAT(refusal({"--fov-scale", "0.5"}), HasSubstr("--fov-scale 0.5: must be 1..2"));
   EXPECT_THAT(refusal({"--fov-scale", "nan"}), HasSubstr("--fov-scale nan"));
+  EXPECT_THAT(refusal({"--allocator", "gpu"}), HasSubstr("auto, device or sequential"));
+  EXPECT_THAT(refusal({"--method", "video"}), HasSubstr("--method video: must be sas"));
   EXPECT_THAT(refusal({"--port", "70000"}), HasSubstr("--port 70000: must be 0..65535"));
   EXPECT_THAT(refusal({"--grid-bits", "21"}), HasSubstr("--grid-bits 21: must be 8..20"));
   EXPECT_THAT(refusal({"--mirror", "localhost"}), HasSubstr("--mirror localhost: must be HOST:PORT"));
