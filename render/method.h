@@ -71,6 +71,7 @@ struct RenderedFrame {
   const LayoutChange* change = nullptr;  ///< valid until the next render; null: the method has no atlas
   std::optional<RenderedView> view;      ///< nullopt: the method has an atlas
   AtlasUsage usage;
+  LayoutCounts layout;
   std::uint32_t visible_patches = 0;
   std::uint64_t shaded_texels = 0;
   double bias = 0;  ///< [SAS] eq. 3; below 0 the atlas has room to spare
@@ -90,6 +91,13 @@ struct VideoSettings {
   VideoDepth depth = VideoDepth::kNone;
 };
 
+/// Who chooses levels and allocates blocks. The layout is the same.
+enum class AllocatorKind : std::uint8_t {
+  kAuto,        ///< the device, unless it is a CPU
+  kDevice,      ///< compute passes ([SAS] 4.2): no host between visibility and layout
+  kSequential,  ///< one thread of the host
+};
+
 /// Settings of all methods; each states its trade. "video" reads `fov_scale`, `frames_in_flight` and `video`.
 struct MethodSettings {
   Extent2D atlas{1024, 1024};  ///< colour texels; quality against bytes and shading time
@@ -100,7 +108,9 @@ struct MethodSettings {
   double max_oversampling = 2.0;       ///< texels a pixel may get when the atlas has room
   std::uint32_t reshade_interval = 1;  ///< each block is shaded at least every n-th frame; new ones at once
   std::uint32_t frames_in_flight = 3;
-  AllocatorSettings allocator;  ///< its atlas member follows `atlas`
+  AllocatorKind allocator_kind = AllocatorKind::kAuto;
+  double level_hysteresis = 0.25;  ///< 0..1 octaves; blocks that stay put against the sharpest size for each
+  AllocatorSettings allocator;     ///< its atlas member follows `atlas`
   VideoSettings video;
 };
 

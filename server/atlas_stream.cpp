@@ -92,6 +92,7 @@ Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
   FrameReport& report = frame.report;
   report.render = prepared.rendered.timings;
   report.usage = prepared.rendered.usage;
+  report.layout = prepared.rendered.layout;
   report.visible_patches = prepared.rendered.visible_patches;
   report.added_patches = static_cast<std::uint32_t>(prepared.update.added.size());
   report.removed_patches = static_cast<std::uint32_t>(prepared.update.removed.size());

@@ -43,6 +43,7 @@ struct FrameReport {
   Duration meta{};    ///< making the update's bytes
   Duration encode{};  ///< H.264
   render::AtlasUsage usage;
+  render::LayoutCounts layout;
   std::uint32_t visible_patches = 0;
   std::uint32_t added_patches = 0;
   std::uint32_t removed_patches = 0;

@@ -14,7 +14,8 @@ StatsCsv::StatsCsv(const std::string& path) {
   file_ << "time_s,session,frame,pose,idr,dropped,pose_age_ms,visibility_ms,allocation_ms,shading_ms,"
            "conversion_ms,render_ms,encoder_wait_ms,encode_ms,session_wait_ms,send_ms,cover_ms,video_bytes,"
            "meta_bytes,visible_patches,added_patches,removed_patches,shaded_texels,bias,allocated_texels,"
-           "partial_tail_texels,on_stacks_texels,inaccessible_texels,free_texels\n";
+           "partial_tail_texels,on_stacks_texels,inaccessible_texels,free_texels,moved_patches,refused_"
+           "patches,atlas_reset\n";
 }
 
 void StatsCsv::add(SessionId session, const Departure& d) {
@@ -32,8 +33,9 @@ void StatsCsv::add(SessionId session, const Departure& d) {
                        to_ms(f.cover));
   file_ << fmt::format("{},{},{},{},{},{},{:.3f},", f.video.size(), f.meta.size(), r.visible_patches,
                        r.added_patches, r.removed_patches, r.shaded_texels, r.bias);
-  file_ << fmt::format("{},{},{},{},{}\n", r.usage.allocated, r.usage.partial_tail, r.usage.on_stacks,
+  file_ << fmt::format("{},{},{},{},{},", r.usage.allocated, r.usage.partial_tail, r.usage.on_stacks,
                        r.usage.inaccessible, r.usage.free);
+  file_ << fmt::format("{},{},{}\n", r.layout.moved, r.layout.refused, r.layout.reset ? 1 : 0);
 }
 
 void StatsLine::add(const Departure& d) {

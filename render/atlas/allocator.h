@@ -35,6 +35,17 @@ struct LayoutChange {
   std::vector<PatchId> refused;  ///< visible, but the atlas was full: they hold no block
 };
 
+/// A change in numbers, for statistics.
+struct LayoutCounts {
+  bool reset = false;
+  std::uint32_t moved = 0;
+  std::uint32_t refused = 0;
+};
+inline LayoutCounts counts_of(const LayoutChange& change) {
+  return {change.reset, static_cast<std::uint32_t>(change.moved.size()),
+          static_cast<std::uint32_t>(change.refused.size())};
+}
+
 /// Where the atlas's texels are ([SAS] fig. 11); the members sum to its area.
 struct AtlasUsage {
   std::uint64_t allocated = 0;

@@ -52,6 +52,8 @@ class VisibilityPass {
 
   /// One word a patch (shaders/level_layout.h), after the recorded work has been waited for.
   [[nodiscard]] std::span<const std::uint32_t> levels() const;
+  /// The same words, for passes recorded behind this one.
+  [[nodiscard]] const Buffer& level_words() const { return geometry_.levels; }
   [[nodiscard]] const VisibilityStats& stats() const { return stats_; }
 
   /// The last view's id buffer of patches, in use as kSampledInCompute; kNoPatch

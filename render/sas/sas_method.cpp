@@ -46,6 +46,7 @@ LevelSettings level_settings(const MethodSettings& s) {
   LevelSettings levels;
   levels.allocator = s.allocator;
   levels.max_oversampling = s.max_oversampling;
+  levels.hysteresis = s.level_hysteresis;
   return levels;
 }
 
@@ -72,9 +73,9 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
       scene_(std::move(scene)),
       scene_gpu_(device, scene_),
       visibility_(device, scene_gpu_, visibility_settings(settings_)),
-      selector_(level_settings(settings_), static_cast<std::uint32_t>(scene_->patches.size())),
-      allocator_(
-          make_sequential_allocator(settings_.allocator, static_cast<std::uint32_t>(scene_->patches.size()))),
+      planner_(make_layout_planner(device, visibility_, level_settings(settings_),
+                                   static_cast<std::uint32_t>(scene_->patches.size()),
+                                   settings_.allocator_kind)),
       freed_(settings_.atlas, settings_.allocator.min_block_log2,
              static_cast<std::uint32_t>(scene_->patches.size())),
       shading_(device, scene_gpu_, settings_.atlas, settings_.frames_in_flight),
@@ -90,18 +91,19 @@ RenderedFrame SasMethod::render(const FrameRequest& request) {
   const Time start = steady_now();
   find_visible(request);
   const Time found = steady_now();
-  const LevelStats& levels = selector_.select(visibility_.levels(), requests_);
-  const LayoutChange& change = allocator_->update(requests_, request.intra);
+  const LayoutChange& change = planner_->finish(request.intra);
+  const LevelStats levels = planner_->levels();
   freed_.apply(change);
   choose_stale(change);
   const Time placed = steady_now();
   const std::uint32_t slot = frames_ % settings_.frames_in_flight;
-  frame.timings.visibility = found - start;
-  frame.timings.allocation = placed - found;
+  frame.timings.visibility = found - start - planner_->device_time();
+  frame.timings.allocation = placed - found + planner_->device_time();
   frame.shaded_texels = shade(request, slot, frame.timings);
   frame.picture = conversion_.picture(slot);
   frame.change = &change;
-  frame.usage = allocator_->usage();
+  frame.layout = counts_of(change);
+  frame.usage = planner_->allocator().usage();
   frame.visible_patches = levels.visible;
   frame.bias = levels.bias;
   ++frames_;
@@ -109,12 +111,14 @@ RenderedFrame SasMethod::render(const FrameRequest& request) {
 }
 
 void SasMethod::find_visible(const FrameRequest& request) {
-  visibility_.record(context_.begin(), request.camera, viewpoints(request, settings_));
+  const auto& commands = context_.begin();
+  visibility_.record(commands, request.camera, viewpoints(request, settings_));
+  planner_->record(commands, request.intra);
   context_.wait(context_.submit());
 }
 
 void SasMethod::choose_stale(const LayoutChange& change) {
-  stale_ = allocator_->blocks();
+  stale_ = planner_->allocator().blocks();
   if (settings_.reshade_interval == 1) return;
   auto added = change.added.begin();
   auto moved = change.moved.begin();

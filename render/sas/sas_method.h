@@ -1,6 +1,5 @@
 #pragma once
 
-#include "render/atlas/level_selection.h"
 #include "render/gpu/gpu_timer.h"
 #include "render/gpu/submit_context.h"
 #include "render/method.h"
@@ -9,6 +8,7 @@
 #include "render/passes/shading.h"
 #include "render/passes/visibility.h"
 #include "render/sas/freed_texels.h"
+#include "render/sas/layout_planner.h"
 
 #include <memory>
 #include <vector>
@@ -28,8 +28,8 @@ class SasMethod final : public Method {
 
   [[nodiscard]] Extent2D picture_extent() const override { return conversion_.picture_extent(); }
   RenderedFrame render(const FrameRequest& request) override;
-  [[nodiscard]] bool wants_intra() const override { return allocator_->wants_reset(); }
-  [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return allocator_->blocks(); }
+  [[nodiscard]] bool wants_intra() const override { return planner_->allocator().wants_reset(); }
+  [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return planner_->allocator().blocks(); }
 
   /// What the last frame's visibility pass did.
   [[nodiscard]] const VisibilityStats& visibility_stats() const { return visibility_.stats(); }
@@ -46,15 +46,13 @@ class SasMethod final : public Method {
   std::shared_ptr<const Scene> scene_;
   SceneGpu scene_gpu_;
   VisibilityPass visibility_;
-  LevelSelector selector_;
-  std::unique_ptr<AtlasAllocator> allocator_;
+  std::unique_ptr<LayoutPlanner> planner_;
   FreedTexels freed_;
   ShadingPass shading_;
   I420Pass conversion_;
   GpuTimer timer_;
   SubmitContext context_;
   std::vector<std::uint32_t> chunk_of_patch_;
-  std::vector<BlockRequest> requests_;
   std::vector<PlacedPatch> stale_;  ///< what this frame shades, ascending
   std::uint32_t frames_ = 0;        ///< rendered so far; wraps
 };

@@ -94,6 +94,26 @@ TEST_F(Sas, ForeseenPosesStandInForPrediction) {
   EXPECT_GT(SasMethod(device(), scene, small()).render(r).visible_patches, ahead);
 }
 
+TEST_F(Sas, PlansTheSameLayoutOnTheDeviceAsOnTheHost) {
+  const auto scene = corridor(true);
+  MethodSettings settings = small();
+  settings.atlas = {128, 128};  // too small for all: levels are pressed
+  settings.allocator.superblock_log2 = 5;
+  settings.allocator_kind = AllocatorKind::kSequential;
+  SasMethod host(device(), scene, settings);
+  settings.allocator_kind = AllocatorKind::kDevice;
+  SasMethod on_device(device(), scene, settings);
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const RenderedFrame a = host.render(request(i, i % 5 == 0));
+    const RenderedFrame b = on_device.render(request(i, i % 5 == 0));
+    EXPECT_EQ(a.bias, b.bias);
+    EXPECT_EQ(a.visible_patches, b.visible_patches);
+    EXPECT_EQ(a.usage.allocated, b.usage.allocated);
+    EXPECT_EQ(planes(a.picture), planes(b.picture)) << "frame " << i;
+    EXPECT_EQ(host.wants_intra(), on_device.wants_intra());
+  }
+}
+
 TEST_F(Sas, EveryVisiblePatchHoldsAShadedBlock) {
   const auto scene = corridor(false);
   SasMethod method(device(), scene, small());
