@@ -67,6 +67,27 @@ Picture UsageOverlay::by_age(std::uint32_t old_frames) const {
   return picture;
 }
 
+Picture UsageOverlay::by_class() const {
+  static constexpr Rgba8 kAllocated{70, 180, 90, 255};
+  static constexpr Rgba8 kFragmented{235, 150, 50, 255};
+  static constexpr Rgba8 kWholeFree{110, 80, 150, 255};
+  const std::uint32_t columns = atlas_.width >> superblock_log2_;
+  std::vector<bool> in_use(std::size_t{columns} * (atlas_.height >> superblock_log2_));
+  const auto superblock_at = [&](std::uint32_t x, std::uint32_t y) {
+    return std::size_t{y >> superblock_log2_} * columns + (x >> superblock_log2_);
+  };
+  for (const auto& [patch, placed] : placed_) in_use[superblock_at(placed.block.x, placed.block.y)] = true;
+  Picture picture = empty_atlas();
+  for (std::uint32_t y = 0; y < atlas_.height; ++y) {
+    for (std::uint32_t x = 0; x < atlas_.width; ++x) {
+      if (picture.at(x, y) == kOutline) continue;
+      picture.set(x, y, in_use[superblock_at(x, y)] ? kFragmented : kWholeFree);
+    }
+  }
+  for (const auto& [patch, placed] : placed_) draw_block(picture, placed.block, kAllocated);
+  return picture;
+}
+
 double UsageOverlay::mean_age() const {
   double texels = 0;
   double sum = 0;

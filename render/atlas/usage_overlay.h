@@ -22,6 +22,9 @@ class UsageOverlay {
   [[nodiscard]] Picture by_level() const;
   /// White for blocks placed in the newest frame, cooling through red to blue after `old_frames` frames.
   [[nodiscard]] Picture by_age(std::uint32_t old_frames = 30) const;
+  /// Green where blocks are, orange where texels of a superblock in use are free (on a stack, in a tail, or
+  /// lost until a reset), purple where superblocks are free: the colours of [SAS] fig. 11.
+  [[nodiscard]] Picture by_class() const;
   /// Mean frames since each texel's block was placed: temporal coherence in one number; 0 if empty.
   [[nodiscard]] double mean_age() const;
 

@@ -41,5 +41,16 @@ TEST(UsageOverlay, AgesFromTheFrameOfPlacement) {
   EXPECT_EQ(overlay.by_age(2).at(32, 0), (Rgba8{255, 255, 255, 255}));
 }
 
+TEST(UsageOverlay, TellsFreeSuperblocksFromHolesInThoseInUse) {
+  UsageOverlay overlay({64, 64}, 4);
+  LayoutChange change;
+  change.added = {{PatchId{1}, {16, 0, 3, 3, false}}};
+  overlay.observe(change);
+  const Picture picture = overlay.by_class();
+  EXPECT_EQ(picture.at(17, 1), (Rgba8{70, 180, 90, 255}));
+  EXPECT_EQ(picture.at(25, 1), (Rgba8{235, 150, 50, 255}));
+  EXPECT_EQ(picture.at(1, 1), (Rgba8{110, 80, 150, 255}));
+}
+
 }  // namespace
 }  // namespace atlaswire::render
