@@ -1,13 +1,16 @@
 #include "codec/meta_update.h"
 
+#include "codec/gate_meta.h"
 #include "codec/plain_meta.h"
 
 namespace atlaswire::codec {
 
-std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLimits&) {
+std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLimits& limits) {
   switch (kind) {
     case MetaCodecKind::kPlain:
       return std::make_unique<PlainMetaEncoder>();
+    case MetaCodecKind::kGate:
+      return std::make_unique<GateMetaEncoder>(limits);
   }
   return nullptr;
 }
@@ -16,6 +19,8 @@ std::unique_ptr<MetaDecoder> make_meta_decoder(MetaCodecKind kind, const MetaLim
   switch (kind) {
     case MetaCodecKind::kPlain:
       return std::make_unique<PlainMetaDecoder>(limits);
+    case MetaCodecKind::kGate:
+      return std::make_unique<GateMetaDecoder>(limits);
   }
   return nullptr;
 }
@@ -40,6 +45,8 @@ const char* error_text(MetaError e) {
       return "a patch with an impossible triangle count or drawing class";
     case MetaError::kBadOrder:
       return "a moved patch that the same update adds or removes";
+    case MetaError::kOutOfStep:
+      return "the meta update does not continue what this end knows";
   }
   return "unknown meta error";
 }

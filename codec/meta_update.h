@@ -76,7 +76,7 @@ class MetaDecoder {
 };
 
 /// Which meta codec both ends use; a number on the wire.
-enum class MetaCodecKind : std::uint8_t { kPlain = 1 };
+enum class MetaCodecKind : std::uint8_t { kPlain = 1, kGate = 2 };
 
 std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLimits& limits);
 std::unique_ptr<MetaDecoder> make_meta_decoder(MetaCodecKind kind, const MetaLimits& limits);
@@ -91,7 +91,8 @@ enum class MetaError {
   kBadPosition,
   kBadBlock,
   kBadPatch,
-  kBadOrder
+  kBadOrder,
+  kOutOfStep
 };
 const char* error_text(MetaError e);
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "codec/gate_plan.h"
+#include "codec/gate_state.h"
+#include "codec/meta_update.h"
+
+namespace atlaswire::codec {
+
+/// MetaCodecKind::kGate, the incremental form: both ends remember every patch that was ever visible and where
+/// the known surface ends, so that a patch that comes back is a decision or two, and a new one grows from its
+/// neighbours. docs/PROTOCOL.md, "Meta update, gate form".
+///
+/// What a decoder gives is equivalent, not equal: the same patches with the same positions, drawing and
+/// blocks under the same patch ids, but vertices numbered as they came, one for each grid position; and a
+/// patch that is removed and added again at once, unchanged, is at most moved.
+class GateMetaEncoder final : public MetaEncoder {
+ public:
+  explicit GateMetaEncoder(const MetaLimits& limits);
+
+  void encode(const MetaUpdate& update, ByteBuffer& out) override;
+
+ private:
+  MetaLimits limits_;
+  GateState state_;
+  GatePlan plan_;
+};
+
+/// The other end. A stream out of step, by an update lost or bent, is noticed at the first update that does
+/// not match (2^-16 of them pass) and refused with kOutOfStep until one with `reset` comes.
+class GateMetaDecoder final : public MetaDecoder {
+ public:
+  explicit GateMetaDecoder(const MetaLimits& limits);
+
+  Result<MetaUpdate> decode(ByteView bytes) override;
+
+ private:
+  MetaLimits limits_;
+  GateState state_;
+  bool broken_ = false;
+};
+
+}  // namespace atlaswire::codec

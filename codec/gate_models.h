@@ -1,0 +1,65 @@
+#pragma once
+
+#include "codec/adaptive_models.h"
+
+#include <array>
+#include <cstdint>
+
+namespace atlaswire::codec {
+
+/// Contexts of a block's size, apart for blocks that change, come back and are new.
+struct LevelModels {
+  AdaptiveBit same;                            ///< size and mirroring as at the reference
+  std::array<AdaptiveTree<4>, 16> width;       ///< by the reference's width
+  std::array<AdaptiveTree<4>, 3 * 16> height;  ///< by how the width went, and the reference's height
+  std::array<AdaptiveBit, 2 * 2> transposed;   ///< by the reference's, and whether the size is as there
+};
+
+/// Contexts of where a vertex is, relative to where it was expected.
+struct PositionModels {
+  static constexpr std::uint32_t kScales = 20;
+  /// Equal to one of three coordinates nearby: by which, scale, how many of the axes before were, and axis.
+  std::array<AdaptiveBit, 3 * kScales * 3 * 3> equals;
+  std::array<AdaptiveTree<5>, kScales * 3> length;  ///< bit length: by scale, and the axis before
+  std::array<std::array<AdaptiveBit, 4>, 32> mantissa;
+};
+
+/// Every adaptive context of the gate form, as long-lived as the stream between two restarts.
+struct GateModels {
+  static constexpr std::uint32_t kNear = 6;              ///< patches near in number, whose gates are offered
+  static constexpr std::uint32_t kDistanceClasses = 10;  ///< of a corner on offer from where one was expected
+
+  // The head of an update.
+  AdaptiveBit next_frame;
+  AdaptiveBit any_drops;
+  AdaptiveBit more_drops;
+  AdaptiveUnsigned drop_skip;
+  AdaptiveUnsigned drop_length;
+
+  // Who comes and goes.
+  std::array<AdaptiveBit, 3> calm_group;      ///< by whether the calm groups before stayed calm
+  std::array<AdaptiveBit, 256 * 4 * 3> flip;  ///< by history, the patch before, and how long calm
+  std::array<AdaptiveBit, 3> change_group;
+  std::array<AdaptiveBit, 3 * 3> change;  ///< by how long calm, and the patches before
+  LevelModels changed_level;
+  LevelModels shown_level;
+  LevelModels new_level;
+
+  // Patches never seen before.
+  AdaptiveUnsigned new_patches;
+  std::array<AdaptiveUnsigned, 3> gap;       ///< by the gap before
+  std::array<AdaptiveTree<2>, 4> triangles;  ///< by those of the nearest patch
+  std::array<AdaptiveTree<3>, 7> draw;       ///< by that of the nearest patch
+  std::array<AdaptiveBit, kNear * 5 * 3 * 3>
+      gate;                                     ///< by nearness, edge, its patch's triangles, own triangles
+  std::array<AdaptiveTree<3>, 3 * 3 * 5> turn;  ///< by own triangles, those of the gate's patch, its edge
+  std::array<AdaptiveBit, 3 * kDistanceClasses * 3 * 2> corner;
+  std::array<PositionModels, 2> position;  ///< without and with a gate
+
+  // Where blocks are.
+  AdaptiveBit aligned;
+  std::array<AdaptiveTree<4>, 16> block_x;  ///< by width
+  std::array<AdaptiveTree<4>, 16> block_y;  ///< by height
+};
+
+}  // namespace atlaswire::codec

@@ -1,0 +1,69 @@
+#include "codec/gate_table.h"
+
+namespace atlaswire::codec {
+
+void GateTable::clear() {
+  index_.clear();
+  links_.clear();
+  unused_.clear();
+  leaving_.clear();
+  arriving_.clear();
+}
+
+void GateTable::add(const Outline& patch) {
+  for (std::uint32_t i = 0; i < patch.count; ++i) {
+    const std::uint32_t from = patch.at(i);
+    const std::uint32_t to = patch.at(i + 1);
+    if (from == to) continue;
+    if (const std::uint32_t filled = find(from, to); filled != kNone) {
+      close(filled);
+    } else if (find(to, from) == kNone) {
+      open({.from = to,
+            .to = from,
+            .behind_from = patch.at(i + 2),
+            .behind_to = patch.at(i + patch.count - 1)});
+    }
+  }
+}
+
+void GateTable::open(const Gate& gate) {
+  std::uint32_t number = static_cast<std::uint32_t>(links_.size());
+  if (unused_.empty()) {
+    links_.emplace_back();
+  } else {
+    number = unused_.back();
+    unused_.pop_back();
+  }
+  links_[number] = {.gate = gate};
+  index_.insert(key_of(gate.from, gate.to), number);
+  link(leaving_, &Linked::leaving, gate.from, number);
+  link(arriving_, &Linked::arriving, gate.to, number);
+}
+
+void GateTable::close(std::uint32_t number) {
+  const Gate gate = links_[number].gate;
+  index_.erase(key_of(gate.from, gate.to));
+  unlink(leaving_, &Linked::leaving, gate.from, number);
+  unlink(arriving_, &Linked::arriving, gate.to, number);
+  unused_.push_back(number);
+}
+
+void GateTable::link(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number) {
+  if (vertex >= heads.size()) heads.resize(std::size_t{vertex} + 1, kNone);
+  const std::uint32_t next = heads[vertex];
+  links_[number].*list = {.next = next};
+  if (next != kNone) (links_[next].*list).previous = number;
+  heads[vertex] = number;
+}
+
+void GateTable::unlink(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number) {
+  const Link link = links_[number].*list;
+  if (link.next != kNone) (links_[link.next].*list).previous = link.previous;
+  if (link.previous != kNone) {
+    (links_[link.previous].*list).next = link.next;
+  } else {
+    heads[vertex] = link.next;
+  }
+}
+
+}  // namespace atlaswire::codec

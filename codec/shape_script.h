@@ -1,0 +1,459 @@
+#pragma once
+
+#include "base/grid.h"
+#include "codec/gate_state.h"
+#include "codec/level_script.h"
+#include "codec/meta_update.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace atlaswire::codec {
+
+/// A patch that an encoder wants to make known.
+struct WantedPatch {
+  PatchId id{};
+  std::uint8_t triangles = 1;
+  PatchClass draw;
+  std::array<GridPosition, kMaxPatchCorners> positions{};
+  Block block;
+};
+
+/// Shapes and block sizes of patches never seen before, decision by decision, the same for both directions:
+/// with a RangeEncoder it is told each patch, with a RangeDecoder it finds out. docs/PROTOCOL.md, "Shapes". A
+/// patch is attached to a gate of a patch near in number, if one fits; its other corners are border vertices
+/// beside it or positions relative to where the surface would go on.
+template <class Coder>
+class ShapeScript {
+ public:
+  ShapeScript(Coder& coder, GateState& state, const MetaLimits& limits)
+      : coder_(&coder), state_(&state), models_(&state.models), limits_(&limits) {}
+
+  /// The next patch in ascending order of ids, its block without a position. nullopt: nonsense was decoded,
+  /// and `error` says what.
+  std::optional<NewResident> code(std::span<const NewResident> before, const WantedPatch* wanted);
+  [[nodiscard]] MetaError error() const { return error_; }
+
+ private:
+  using Offset = glm::ivec3;
+  struct Near {
+    PatchShape shape;
+    Block block;
+    bool known = false;
+  };
+  struct Attached {
+    const Gate* gate = nullptr;  ///< null: to none
+    std::uint32_t triangles = 1;
+    std::uint32_t edge = 0;
+  };
+  /// What is known when a corner's turn comes.
+  struct Expected {
+    std::uint32_t previous = kNone;   ///< the corner before, if any
+    std::uint32_t following = kNone;  ///< the corner behind, if this one closes the outline
+    Offset at{0};
+    std::array<Offset, 2> beside{};  ///< vertices whose coordinates may come again
+    std::uint32_t scale = 0;
+    bool attached = false;
+  };
+  struct Offer {
+    std::uint32_t vertex = 0;
+    std::uint32_t distance = 0;
+    std::uint32_t kind = 0;  ///< 0: next on one border, 1: on both
+  };
+  struct Offers {
+    std::array<Offer, 16> list{};
+    std::uint32_t count = 0;
+  };
+
+  static constexpr std::uint32_t kNone = VertexTable::kNone;
+  static constexpr std::uint32_t kMostTested = 8;  ///< gates looked at of a vertex's, which may be many
+
+  bool code_id(const WantedPatch* wanted, NewResident& patch);
+  void look_around(std::span<const NewResident> before);
+  bool code_class(const WantedPatch* wanted, PatchShape& shape);
+  Attached code_gate(const PatchShape& shape, const WantedPatch* wanted);
+  bool code_corners(const Attached& attached, const WantedPatch* wanted, PatchShape& shape);
+  Expected expect(const Attached& attached, const PatchShape& shape, std::uint32_t turn, std::uint32_t step);
+  void expect_attached(const Gate& gate, const PatchShape& shape, std::uint32_t turn, std::uint32_t step,
+                       Expected& expected);
+  void expect_alone(const PatchShape& shape, std::uint32_t step, Expected& expected);
+  std::uint32_t code_corner(const Expected& expected, std::span<const std::uint32_t> taken,
+                            const GridPosition* wanted);
+  void offer(Offers& offers, const Expected& expected, std::span<const std::uint32_t> taken,
+             std::uint32_t vertex) const;
+  Offers offers_for(const Expected& expected, std::span<const std::uint32_t> taken) const;
+  GridPosition code_position(const Expected& expected, const GridPosition* wanted);
+  std::int32_t code_residual(PositionModels& models, std::uint32_t scale, std::uint32_t& size_class,
+                             std::int32_t value);
+
+  [[nodiscard]] Offset at(std::uint32_t vertex) const { return Offset(state_->vertices.position(vertex)); }
+  static std::uint32_t distance(const Offset& a, const Offset& b) {
+    return static_cast<std::uint32_t>(std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z));
+  }
+  static Outline outline(const PatchShape& shape) { return {shape.corners, corner_count(shape.triangles)}; }
+  bool fail(MetaError why) {
+    error_ = why;
+    return false;
+  }
+
+  Coder* coder_;
+  GateState* state_;
+  GateModels* models_;
+  const MetaLimits* limits_;
+  std::array<Near, GateModels::kNear> near_{};
+  std::uint32_t gap_class_ = 2;
+  std::uint32_t next_id_ = 0;        ///< the least that may come
+  std::uint32_t next_resident_ = 0;  ///< index of the first resident not below it
+  MetaError error_{};
+};
+
+template <class Coder>
+std::optional<NewResident> ShapeScript<Coder>::code(std::span<const NewResident> before,
+                                                    const WantedPatch* wanted) {
+  NewResident patch;
+  if (!code_id(wanted, patch)) return std::nullopt;
+  look_around(before);
+  if (!code_class(wanted, patch.shape)) return std::nullopt;
+  const Attached attached = code_gate(patch.shape, wanted);
+  if (!code_corners(attached, wanted, patch.shape)) return std::nullopt;
+  const auto block =
+      code_level(*coder_, models_->new_level, near_[0].block, wanted ? &wanted->block : nullptr);
+  if (!block) {
+    fail(MetaError::kBadBlock);
+    return std::nullopt;
+  }
+  patch.block = *block;
+  state_->gates.add(outline(patch.shape));
+  state_->mix(value(patch.id));
+  for (std::uint32_t i = 0; i < corner_count(patch.shape.triangles); ++i) state_->mix(patch.shape.corners[i]);
+  return patch;
+}
+
+/// Ids of patches that are known already do not count in a gap.
+template <class Coder>
+bool ShapeScript<Coder>::code_id(const WantedPatch* wanted, NewResident& patch) {
+  const ResidentSet& residents = state_->residents;
+  std::uint32_t gap = 0;
+  if (wanted != nullptr) {
+    const std::uint32_t at = residents.lower_bound(wanted->id);
+    gap = value(wanted->id) - next_id_ - (at - next_resident_);
+  }
+  gap = models_->gap[gap_class_].code(*coder_, gap);
+  gap_class_ = gap == 0 ? 0 : gap < 16 ? 1 : 2;
+  if (gap >= limits_->max_patches) return fail(MetaError::kIdOutOfRange);
+  std::uint64_t id = std::uint64_t{next_id_} + gap;
+  for (; next_resident_ < residents.size() && value(residents.presence(next_resident_).id) <= id;
+       ++next_resident_) {
+    ++id;
+  }
+  if (id >= limits_->max_patches) return fail(MetaError::kIdOutOfRange);
+  patch.id = PatchId{static_cast<std::uint32_t>(id)};
+  next_id_ = static_cast<std::uint32_t>(id) + 1;
+  return true;
+}
+
+/// The patches next in number, known before or new, below and above by turns.
+template <class Coder>
+void ShapeScript<Coder>::look_around(std::span<const NewResident> before) {
+  const ResidentSet& residents = state_->residents;
+  std::uint32_t above = next_resident_;
+  std::uint32_t below = next_resident_;
+  std::size_t left = before.size();
+  near_ = {};
+  for (std::uint32_t i = 0; i < near_.size(); ++i) {
+    if (i % 2 == 1) {
+      if (above == residents.size()) continue;
+      near_[i] = {residents.shape(above), residents.block(above), true};
+      ++above;
+      continue;
+    }
+    const bool resident = below > 0;
+    const bool fresh = left > 0;
+    if (fresh && (!resident || before[left - 1].id > residents.presence(below - 1).id)) {
+      --left;
+      near_[i] = {before[left].shape, before[left].block, true};
+    } else if (resident) {
+      --below;
+      near_[i] = {residents.shape(below), residents.block(below), true};
+    }
+  }
+  if (!near_[0].known) std::swap(near_[0], near_[1]);
+}
+
+template <class Coder>
+bool ShapeScript<Coder>::code_class(const WantedPatch* wanted, PatchShape& shape) {
+  const Near& next = near_[0];
+  const std::uint32_t triangles = models_->triangles[next.known ? next.shape.triangles : 0].code(
+      *coder_, wanted ? wanted->triangles : 0U);
+  const auto number_of = [](const PatchClass& draw) {
+    return 2 * static_cast<std::uint32_t>(draw.alpha) + static_cast<std::uint32_t>(draw.double_sided);
+  };
+  const std::uint32_t draw = models_->draw[next.known ? number_of(next.shape.draw) : 6].code(
+      *coder_, wanted ? number_of(wanted->draw) : 0U);
+  if (triangles == 0 || draw > 5) return fail(MetaError::kBadPatch);
+  shape.triangles = static_cast<std::uint8_t>(triangles);
+  shape.draw.alpha = static_cast<PatchClass::Alpha>(draw / 2);
+  shape.draw.double_sided = draw % 2 != 0;
+  return true;
+}
+
+/// Offers the open gates of patches near in number, until one is taken.
+template <class Coder>
+typename ShapeScript<Coder>::Attached ShapeScript<Coder>::code_gate(const PatchShape& shape,
+                                                                    const WantedPatch* wanted) {
+  const std::uint32_t corners = corner_count(shape.triangles);
+  std::array<std::uint32_t, kMaxPatchCorners> slots{};
+  for (std::uint32_t i = 0; wanted != nullptr && i < corners; ++i) {
+    slots[i] = state_->vertices.find(wanted->positions[i]);
+  }
+  const auto fits = [&](const Gate& gate) {
+    for (std::uint32_t i = 0; i < corners; ++i) {
+      if (slots[i] == gate.from && slots[(i + 1) % corners] == gate.to) return true;
+    }
+    return false;
+  };
+  for (std::uint32_t n = 0; n < near_.size(); ++n) {
+    if (!near_[n].known) continue;
+    const Outline other = outline(near_[n].shape);
+    const std::uint32_t kind = near_[n].shape.triangles - 1U;
+    for (std::uint32_t edge = 0; edge < other.count; ++edge) {
+      const std::uint32_t number = state_->gates.find(other.at(edge + 1), other.at(edge));
+      if (number == GateTable::kNone) continue;
+      const Gate& gate = state_->gates.gate(number);
+      AdaptiveBit& model = models_->gate[((n * 5 + edge) * 3 + kind) * 3 + shape.triangles - 1];
+      if (coder_->code(model, wanted != nullptr && fits(gate))) return {&gate, kind + 1, edge};
+    }
+  }
+  return {};
+}
+
+template <class Coder>
+bool ShapeScript<Coder>::code_corners(const Attached& attached, const WantedPatch* wanted,
+                                      PatchShape& shape) {
+  const std::uint32_t corners = corner_count(shape.triangles);
+  const auto position_of = [&](std::uint32_t corner) {
+    return wanted == nullptr ? nullptr : &wanted->positions[corner % corners];
+  };
+  std::array<std::uint32_t, kMaxPatchCorners> taken{};
+  std::uint32_t count = 0;
+  std::uint32_t turn = 0;
+  if (attached.gate != nullptr) {
+    const Gate& gate = *attached.gate;
+    for (; wanted != nullptr && turn < corners; ++turn) {
+      if (state_->vertices.find(*position_of(turn)) == gate.from &&
+          state_->vertices.find(*position_of(turn + 1)) == gate.to) {
+        break;
+      }
+    }
+    turn = models_->turn[((shape.triangles - 1U) * 3 + attached.triangles - 1) * 5 + attached.edge].code(
+        *coder_, turn);
+    if (turn >= corners) return fail(MetaError::kBadPatch);
+    taken[count++] = shape.corners[turn] = gate.from;
+    taken[count++] = shape.corners[(turn + 1) % corners] = gate.to;
+  }
+  // `attached.gate` stays where it is: gates change only when the patch is whole.
+  for (std::uint32_t step = count; step < corners; ++step) {
+    const Expected expected = expect(attached, shape, turn, step);
+    const std::uint32_t vertex =
+        code_corner(expected, std::span(taken).first(count), position_of(turn + step));
+    if (vertex == kNone) return false;
+    taken[count++] = shape.corners[(turn + step) % corners] = vertex;
+  }
+  return true;
+}
+
+/// Where corner `turn + step` would be if the surface went on as it did.
+template <class Coder>
+typename ShapeScript<Coder>::Expected ShapeScript<Coder>::expect(const Attached& attached,
+                                                                 const PatchShape& shape, std::uint32_t turn,
+                                                                 std::uint32_t step) {
+  const std::uint32_t corners = corner_count(shape.triangles);
+  Expected expected;
+  if (step > 0) expected.previous = shape.corners[(turn + step - 1) % corners];
+  if (step == corners - 1) expected.following = shape.corners[turn];
+  if (attached.gate != nullptr) {
+    expect_attached(*attached.gate, shape, turn, step, expected);
+  } else {
+    expect_alone(shape, step, expected);
+  }
+  const auto top = static_cast<std::int32_t>((1U << limits_->grid_bits) - 1);
+  for (int axis = 0; axis < 3; ++axis) expected.at[axis] = std::clamp(expected.at[axis], 0, top);
+  return expected;
+}
+
+template <class Coder>
+void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& shape, std::uint32_t turn,
+                                         std::uint32_t step, Expected& expected) {
+  const std::uint32_t corners = corner_count(shape.triangles);
+  const Offset from = at(gate.from);
+  const Offset to = at(gate.to);
+  const bool from_triangle = gate.behind_from == gate.behind_to;
+  Offset onward = to - at(gate.behind_to);
+  if (from_triangle) {
+    onward = corners == 3 ? from - at(gate.behind_to) : (from + to) / 2 - at(gate.behind_to);
+  }
+  const Offset first = step == 2 ? to : at(shape.corners[(turn + 2) % corners]);
+  if (step == 2) {
+    expected.at = to + onward;
+  } else if (step == corners - 1) {
+    expected.at = from + (first - to);
+  } else {
+    expected.at = first + (from - to) / 2;
+  }
+  expected.beside = {to, from};
+  expected.scale =
+      std::min<std::uint32_t>(17, static_cast<std::uint32_t>(std::bit_width(distance(from, to))));
+  expected.attached = true;
+}
+
+/// Where the nearest patch in number has its corner, moved as the corners before it moved.
+template <class Coder>
+void ShapeScript<Coder>::expect_alone(const PatchShape& shape, std::uint32_t step, Expected& expected) {
+  const std::uint32_t corners = corner_count(shape.triangles);
+  const Near& next = near_[0];
+  const Outline other = outline(next.shape);
+  expected.scale = step == 0 ? 18 : 19;
+  if (step == 0) {
+    if (!next.known) return;
+    expected.at = at(other.at(0));
+    expected.beside = {at(other.at(1)), at(other.at(2))};
+    return;
+  }
+  const Offset before = at(shape.corners[step - 1]);
+  expected.beside = {before, at(shape.corners[0])};
+  if (step == 3 && corners == 4) {
+    expected.at = at(shape.corners[0]) + before - at(shape.corners[1]);
+  } else if (next.known) {
+    expected.at = before + at(other.at(step)) - at(other.at(step - 1));
+  } else {
+    expected.at = before;
+  }
+}
+
+template <class Coder>
+void ShapeScript<Coder>::offer(Offers& offers, const Expected& expected, std::span<const std::uint32_t> taken,
+                               std::uint32_t vertex) const {
+  if (std::ranges::find(taken, vertex) != taken.end()) return;
+  for (std::uint32_t i = 0; i < offers.count; ++i) {
+    if (offers.list[i].vertex != vertex) continue;
+    offers.list[i].kind = 1;
+    return;
+  }
+  offers.list[offers.count++] = {vertex, distance(at(vertex), expected.at), 0};
+}
+
+/// The border vertices next to those that are already corners, the likeliest first.
+template <class Coder>
+typename ShapeScript<Coder>::Offers ShapeScript<Coder>::offers_for(
+    const Expected& expected, std::span<const std::uint32_t> taken) const {
+  const GateTable& gates = state_->gates;
+  Offers offers;
+  std::uint32_t tested = 0;
+  if (expected.previous != kNone) {
+    for (std::uint32_t g = gates.first_leaving(expected.previous); g != kNone && tested < kMostTested;
+         g = gates.next_leaving(g), ++tested) {
+      offer(offers, expected, taken, gates.gate(g).to);
+    }
+  }
+  tested = 0;
+  if (expected.following != kNone) {
+    for (std::uint32_t g = gates.first_arriving(expected.following); g != kNone && tested < kMostTested;
+         g = gates.next_arriving(g), ++tested) {
+      offer(offers, expected, taken, gates.gate(g).from);
+    }
+  }
+  const auto end = offers.list.begin() + offers.count;
+  std::stable_sort(offers.list.begin(), end,
+                   [](const Offer& a, const Offer& b) { return a.distance < b.distance; });
+  offers.count = std::min(offers.count, 3U);
+  return offers;
+}
+
+/// kNone: not possible.
+template <class Coder>
+std::uint32_t ShapeScript<Coder>::code_corner(const Expected& expected, std::span<const std::uint32_t> taken,
+                                              const GridPosition* wanted) {
+  const std::uint32_t wanted_vertex = wanted == nullptr ? kNone : state_->vertices.find(*wanted);
+  const Offers offers = offers_for(expected, taken);
+  for (std::uint32_t i = 0; i < offers.count; ++i) {
+    const Offer& offered = offers.list[i];
+    const int relative = std::bit_width(offered.distance) - static_cast<int>(expected.scale) + 6;
+    const auto near = static_cast<std::uint32_t>(
+        std::clamp(relative, 0, static_cast<int>(GateModels::kDistanceClasses) - 1));
+    const std::uint32_t closes = expected.following != kNone ? 1 + offered.kind : 0;
+    AdaptiveBit& model = models_->corner[((i * GateModels::kDistanceClasses + near) * 3 + closes) * 2 +
+                                         static_cast<std::uint32_t>(expected.attached)];
+    if (coder_->code(model, wanted_vertex == offered.vertex)) return offered.vertex;
+  }
+  const GridPosition position = code_position(expected, wanted);
+  const std::uint32_t top = (1U << limits_->grid_bits) - 1;
+  if (position.x > top || position.y > top || position.z > top) {
+    fail(MetaError::kBadPosition);
+    return kNone;
+  }
+  const std::uint32_t vertex = state_->vertices.find(position);
+  if (vertex != kNone) return vertex;
+  if (state_->vertices.size() >= limits_->max_vertices) {
+    fail(MetaError::kIdOutOfRange);
+    return kNone;
+  }
+  state_->mix(position.x);
+  state_->mix(position.y);
+  state_->mix(position.z);
+  return state_->vertices.add(position);
+}
+
+/// Axis by axis: equal to the expected coordinate or to that of a vertex beside, or a difference to the
+/// expected.
+template <class Coder>
+GridPosition ShapeScript<Coder>::code_position(const Expected& expected, const GridPosition* wanted) {
+  PositionModels& models = models_->position[expected.attached ? 1 : 0];
+  GridPosition position{0};
+  std::uint32_t hits = 0;
+  std::uint32_t size_class = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int32_t want = wanted == nullptr ? 0 : static_cast<std::int32_t>((*wanted)[axis]);
+    const std::array<std::int32_t, 3> offered{expected.at[axis], expected.beside[0][axis],
+                                              expected.beside[1][axis]};
+    bool hit = false;
+    for (std::uint32_t i = 0; i < 3 && !hit; ++i) {
+      if (std::find(offered.begin(), offered.begin() + i, offered[i]) != offered.begin() + i) continue;
+      AdaptiveBit& model = models.equals[((i * PositionModels::kScales + expected.scale) * 3 + hits) * 3 +
+                                         static_cast<std::uint32_t>(axis)];
+      hit = coder_->code(model, want == offered[i]);
+      if (hit) position[axis] = static_cast<std::uint32_t>(offered[i]);
+    }
+    hits = hit ? std::min(2U, hits + 1) : 0;
+    if (hit) {
+      size_class = 0;
+      continue;
+    }
+    const std::int32_t residual = code_residual(models, expected.scale, size_class, want - offered[0]);
+    // What is negative becomes larger than any grid.
+    position[axis] = static_cast<std::uint32_t>(offered[0]) + static_cast<std::uint32_t>(residual);
+  }
+  return position;
+}
+
+/// `size_class` goes from axis to axis: how large the difference was for the scale.
+template <class Coder>
+std::int32_t ShapeScript<Coder>::code_residual(PositionModels& models, std::uint32_t scale,
+                                               std::uint32_t& size_class, std::int32_t value) {
+  const auto size = static_cast<std::uint32_t>(std::abs(value));
+  const std::uint32_t length =
+      models.length[scale * 3 + size_class].code(*coder_, static_cast<std::uint32_t>(std::bit_width(size)));
+  size_class = length == 0 ? 0 : length + 2 < scale ? 1 : 2;
+  if (length == 0) return 0;
+  const auto magnitude = static_cast<std::int32_t>(
+      AdaptiveUnsigned::code_below_leading(*coder_, models.mantissa[length], length, size));
+  return coder_->code_raw(value < 0 ? 1 : 0, 1) != 0 ? -magnitude : magnitude;
+}
+
+}  // namespace atlaswire::codec
