@@ -59,8 +59,8 @@ Crossover crossover(const Curve& reference, const Curve& other) {
   Crossover c;
   Curve difference;
   for (const auto& [x, y] : reference) {
-    const auto same = std::find_if(other.begin(), other.end(), [&](const auto& p) { return p.first == x; });
-    if (same != other.end()) difference.emplace_back(x, y - same->second);
+    const auto same = std::lower_bound(other.begin(), other.end(), std::pair(x, -HUGE_VAL));
+    if (same != other.end() && same->first == x) difference.emplace_back(x, y - same->second);
   }
   c.reference_first = !difference.empty() && difference.front().second > 0;
   for (std::size_t i = 1; i < difference.size(); ++i) {
