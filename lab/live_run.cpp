@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string_view>
@@ -24,33 +24,35 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 /// Keys that the programs have options for; others must be at their default.
-constexpr std::array<std::string_view, 21> kHonoured{"scene",
-                                                     "path",
-                                                     "seconds",
-                                                     "display",
-                                                     "horizontal_fov",
-                                                     "method",
-                                                     "atlas",
-                                                     "views",
-                                                     "fov_scale",
-                                                     "id_scale",
-                                                     "grid_bits",
-                                                     "prediction_step_ms",
-                                                     "reshade_interval",
-                                                     "server_hz",
-                                                     "client_hz",
-                                                     "profile",
-                                                     "seed",
-                                                     "bitrate_mbps",
-                                                     "qp",
-                                                     "preset",
-                                                     "intra_interval"};
+constexpr std::string_view kHonoured[]{"scene",
+                                       "path",
+                                       "seconds",
+                                       "display",
+                                       "horizontal_fov",
+                                       "method",
+                                       "atlas",
+                                       "views",
+                                       "fov_scale",
+                                       "id_scale",
+                                       "max_oversampling",
+                                       "grid_bits",
+                                       "prediction_step_ms",
+                                       "reshade_interval",
+                                       "server_hz",
+                                       "client_hz",
+                                       "profile",
+                                       "seed",
+                                       "bitrate_mbps",
+                                       "qp",
+                                       "preset",
+                                       "intra_interval"};
 
 Result<void> check_live(const PointSettings& settings) {
   const PointSettings defaults;
   for (const Key& key : keys()) {
-    const bool honoured = std::find(kHonoured.begin(), kHonoured.end(), key.name) != kHonoured.end();
-    const bool measuring = key.name == "measure_every" || key.name == "flip";
+    const bool honoured =
+        std::find(std::begin(kHonoured), std::end(kHonoured), key.name) != std::end(kHonoured);
+    const bool measuring = key.name == "measure_every" || key.name == "measure_flip";
     const std::string text = value_text(key, settings);
     if (honoured || measuring || text == value_text(key, defaults)) continue;
     return Error{LabError::kOutOfRange,
@@ -84,6 +86,8 @@ std::vector<std::string> daemon_command(const PointSettings& s, const fs::path& 
                                  fmt::format("{}", s.fov_scale),
                                  "--id-scale",
                                  fmt::format("{}", s.id_scale),
+                                 "--max-oversampling",
+                                 fmt::format("{}", s.max_oversampling),
                                  "--views",
                                  fmt::format("{}", s.views),
                                  "--prediction-step",

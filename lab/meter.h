@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lab/point_result.h"
+#include "lab/truth.h"
 #include "render/image/picture.h"
 
 #include <cstddef>
@@ -11,7 +12,7 @@ namespace atlaswire::lab {
 
 /// A displayed frame and what should have been seen.
 struct Displayed {
-  render::Picture truth;
+  TruePicture truth;
   render::Picture view;
 };
 
@@ -23,8 +24,9 @@ class Meter {
 
   /// A frame and the one displayed before it, which flicker needs.
   void add(double t_s, double pose_age_ms, const Displayed& before, const Displayed& now);
-  /// Means over frames, and the lowest MSSIM.
-  void add_figures(std::vector<Figure>& figures) const;
+  /// Means over frames, the lowest MSSIM, and what forward and deferred shading of every displayed frame
+  /// would cost at `client_hz` ([SAS] fig. 12).
+  void add_figures(double client_hz, std::vector<Figure>& figures) const;
   [[nodiscard]] const std::vector<FrameRow>& rows() const { return rows_; }
   /// Writes `worst.png` (lowest MSSIM) and `last.png`: truth, view and their difference. Throws ProgramError.
   void write_pictures() const;
@@ -39,6 +41,8 @@ class Meter {
   bool flip_;
   std::filesystem::path pictures_;
   std::vector<FrameRow> rows_;
+  std::uint64_t forward_fragments_ = 0;
+  std::uint64_t deferred_fragments_ = 0;
   Kept worst_;
   Kept last_;
 };

@@ -48,6 +48,7 @@ client::SessionSettings client_settings(const PointSettings& settings) {
   s.hello.display = settings.display;
   s.hello.vertical_fov = display_camera(settings).vertical_fov;
   s.hello.max_picture = {16'384, 16'384};
+  s.hello.meta_codecs = client::readable_meta_codecs();
   return s;
 }
 

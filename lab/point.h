@@ -23,10 +23,11 @@ struct PointSettings {
   std::string depth = "free";               ///< of mesh and iterative: "free" (exact, no bytes) or "coded"
   bool predict = false;                     ///< warps render for the pose expected at display time
   Extent2D atlas{2048, 2048};               ///< texels (sas)
-  std::uint32_t views = 2;                  ///< visible sets united a frame, at most (sas)
+  std::uint32_t views = 5;                  ///< visible sets united a frame, at most (sas)
   double prediction_step_ms = 1000.0 / 30;  ///< between them (sas)
   double fov_scale = 1.2;                   ///< enlargement of the server's view, >= 1
   double id_scale = 1;                      ///< id pixels per display pixel along a side (sas)
+  double max_oversampling = 2;              ///< texels a pixel may get while the atlas has room, 1..8 (sas)
   std::uint32_t reshade_interval = 1;       ///< frames (sas)
   std::uint32_t grid_bits = 0;              ///< of the replica's grid; 0: suited to the scene (sas)
   // Time and network.
@@ -44,7 +45,7 @@ struct PointSettings {
   std::uint32_t intra_interval = 5;  ///< frames from I-frame to I-frame ([SAS] 5.8)
   // What is measured.
   std::uint32_t measure_every = 8;  ///< displayed frames from one compared with the truth to the next
-  bool flip = true;                 ///< FLIP as well, the slowest of the metrics
+  bool measure_flip = true;         ///< FLIP as well, the slowest of the metrics
   // Causes switched off, one at a time, to tell how much each costs (sas).
   bool foresight = false;         ///< no holes: visible sets from the poses that will be displayed
   bool shade_at_display = false;  ///< no stale shading: shaded for the pose that will be displayed

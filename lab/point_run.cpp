@@ -45,7 +45,7 @@ class PointRun {
         source_(settings, *contender_, motion_),
         carrier_(make_carrier()),
         truth_(*device_, scene_, settings.scene, outputs.truth_cache),
-        meter_(settings.flip, outputs.pictures) {}
+        meter_(settings.measure_flip, outputs.pictures) {}
 
   PointResult run() {
     const auto displayed =
@@ -104,7 +104,7 @@ class PointRun {
 
   PointResult result() const {
     PointResult result;
-    meter_.add_figures(result.figures);
+    meter_.add_figures(settings_.client_hz, result.figures);
     source_.add_figures(from_seconds(settings_.seconds) - carrier_->first_frame(), result.figures);
     carrier_->add_figures(result.figures);
     result.figures.push_back({"longest_still_ms", to_ms(longest_still_)});

@@ -8,6 +8,7 @@
 #include <unistd.h>
 #include <zstd.h>
 
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -36,22 +37,29 @@ std::string identity_of(const std::string& scene) {
   return fmt::format("{}:{}:{}", fs::absolute(scene).string(), size, age);
 }
 
-std::optional<render::Picture> read_packed(const fs::path& file, Extent2D extent) {
+/// A file holds the picture's octets, then the forward fragments as they are in memory, packed together.
+std::optional<TruePicture> read_packed(const fs::path& file, Extent2D extent) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
   const std::vector<char> packed{std::istreambuf_iterator<char>(in), {}};
-  render::Picture picture(extent);
-  const std::size_t size =
-      ZSTD_decompress(picture.rgba.data(), picture.rgba.size(), packed.data(), packed.size());
-  if (ZSTD_isError(size) != 0 || size != picture.rgba.size()) return std::nullopt;
-  return picture;
+  TruePicture truth{.picture = render::Picture(extent)};
+  std::vector<std::uint8_t>& octets = truth.picture.rgba;
+  const std::size_t pixels = octets.size();
+  octets.resize(pixels + sizeof(truth.forward_fragments));
+  const std::size_t size = ZSTD_decompress(octets.data(), octets.size(), packed.data(), packed.size());
+  if (ZSTD_isError(size) != 0 || size != octets.size()) return std::nullopt;
+  std::memcpy(&truth.forward_fragments, octets.data() + pixels, sizeof(truth.forward_fragments));
+  octets.resize(pixels);
+  return truth;
 }
 
 /// Whole or not at all, whoever else writes the same one: a picture that cannot be kept is only slower.
-void write_packed(const fs::path& file, const render::Picture& picture) {
-  std::vector<char> packed(ZSTD_compressBound(picture.rgba.size()));
-  const std::size_t size =
-      ZSTD_compress(packed.data(), packed.size(), picture.rgba.data(), picture.rgba.size(), 1);
+void write_packed(const fs::path& file, const TruePicture& truth) {
+  std::vector<std::uint8_t> octets = truth.picture.rgba;
+  const auto* count = reinterpret_cast<const std::uint8_t*>(&truth.forward_fragments);
+  octets.insert(octets.end(), count, count + sizeof(truth.forward_fragments));
+  std::vector<char> packed(ZSTD_compressBound(octets.size()));
+  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), octets.data(), octets.size(), 1);
   if (ZSTD_isError(size) != 0) return;
   const fs::path fresh = fmt::format("{}.{}", file.string(), getpid());
   std::ofstream out(fresh, std::ios::binary);
@@ -96,14 +104,23 @@ fs::path Truth::place_of(const render::Camera& camera) const {
   return cache_ / fmt::format("{:016x}.zst", hash_of(key));
 }
 
-render::Picture Truth::picture(const render::Camera& camera) {
+TruePicture Truth::picture(const render::Camera& camera) {
+  TruePicture truth = kept_or_rendered(camera);
+  for (std::size_t i = 3; i < truth.picture.rgba.size(); i += 4) {
+    truth.deferred_fragments += truth.picture.rgba[i] != 0 ? 1U : 0U;
+  }
+  return truth;
+}
+
+TruePicture Truth::kept_or_rendered(const render::Camera& camera) {
   if (!cache_.empty()) {
     if (auto kept = read_packed(place_of(camera), camera.extent)) return std::move(*kept);
   }
   if (parts_ == nullptr) parts_ = std::make_unique<Parts>(*device_, scene_);
-  render::Picture picture = parts_->forward.render(camera);
-  if (!cache_.empty()) write_packed(place_of(camera), picture);
-  return picture;
+  TruePicture truth{.picture = parts_->forward.render(camera)};
+  truth.forward_fragments = parts_->forward.fragments();
+  if (!cache_.empty()) write_packed(place_of(camera), truth);
+  return truth;
 }
 
 }  // namespace atlaswire::lab

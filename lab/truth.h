@@ -5,11 +5,19 @@
 #include "render/image/picture.h"
 #include "render/scene/scene.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 
 namespace atlaswire::lab {
+
+/// What should be seen, and what a forward pass shades for it.
+struct TruePicture {
+  render::Picture picture;  ///< alpha: 255 where opaque or masked geometry was hit, 0 where nothing was drawn
+  std::uint64_t forward_fragments = 0;   ///< render::ForwardPass::fragments
+  std::uint64_t deferred_fragments = 0;  ///< pixels with geometry
+};
 
 /// Ground truth: the scene drawn by a forward pass for exactly the displayed pose ([SAS] 5.6). Pictures are
 /// kept in a folder that the points of a sweep share, since all of them are compared with the same ones.
@@ -21,11 +29,11 @@ class Truth {
         std::filesystem::path cache);
   ~Truth();
 
-  /// Alpha: 255 where opaque or masked geometry was hit, 0 where nothing was drawn.
-  render::Picture picture(const render::Camera& camera);
+  TruePicture picture(const render::Camera& camera);
 
  private:
   struct Parts;
+  TruePicture kept_or_rendered(const render::Camera& camera);
   [[nodiscard]] std::filesystem::path place_of(const render::Camera& camera) const;
 
   render::Device* device_;

@@ -120,6 +120,7 @@ DeviceFeatures::DeviceFeatures(const vk::raii::PhysicalDevice& device) {
                    .multiDrawIndirect = true,
                    .depthClamp = has.depthClamp,
                    .samplerAnisotropy = has.samplerAnisotropy,
+                   .occlusionQueryPrecise = has.occlusionQueryPrecise,
                    .vertexPipelineStoresAndAtomics = has.vertexPipelineStoresAndAtomics,
                    .fragmentStoresAndAtomics = true,
                    .shaderStorageImageExtendedFormats = has.shaderStorageImageExtendedFormats}};

@@ -49,16 +49,25 @@ ForwardPass::ForwardPass(Device& device, const SceneGpu& scene)
     : context_(device, "forward", 1),
       scene_(&scene),
       pipelines_(device, scene, MaterialPipelines::Target::kCamera),
-      first_triangle_(count_triangles(scene.scene())) {}
+      first_triangle_(count_triangles(scene.scene())),
+      query_(device.vk(), {.queryType = vk::QueryType::eOcclusion, .queryCount = 1}) {
+  device.set_name(query_, "forward fragments");
+  if (device.features().occlusionQueryPrecise == VK_TRUE) precision_ = vk::QueryControlFlagBits::ePrecise;
+}
 
 Picture ForwardPass::render(const Camera& camera) {
   Picture picture(camera.extent);
   if (picture.empty()) return picture;
   fit_target(target_, context_.device(), "forward", camera.extent);
   context_.run([&](const vk::raii::CommandBuffer& commands) {
+    commands.resetQueryPool(*query_, 0, 1);
+    commands.beginQuery(*query_, 0, precision_);
     record(commands, camera, *target_);
+    commands.endQuery(*query_, 0);
     target_->record_readback(commands);
   });
+  fragments_ =
+      query_.getResult<std::uint64_t>(0, 1, sizeof(std::uint64_t), vk::QueryResultFlagBits::e64).second;
   target_->copy_to(picture);
   return picture;
 }

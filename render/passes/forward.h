@@ -18,6 +18,9 @@ class ForwardPass {
 
   /// Renders and waits. Alpha: 255 where opaque or masked geometry was hit, 0 where nothing was drawn.
   Picture render(const Camera& camera);
+  /// Fragments of the last render() that passed the depth test when they were drawn, from near to far: what
+  /// forward shading costs. Devices without precise occlusion queries may say less.
+  [[nodiscard]] std::uint64_t fragments() const { return fragments_; }
   /// Records the same drawing into a target of the camera's extent, and no read-back.
   void record(const vk::raii::CommandBuffer& commands, const Camera& camera, OffscreenTarget& target,
               OffscreenTarget::Depth depth_after = OffscreenTarget::Depth::kDropped) const;
@@ -29,7 +32,10 @@ class ForwardPass {
   const SceneGpu* scene_;
   MaterialPipelines pipelines_;
   std::vector<std::uint32_t> first_triangle_;  ///< of each patch
-  std::unique_ptr<OffscreenTarget> target_;    ///< of the last camera's extent
+  vk::raii::QueryPool query_;
+  vk::QueryControlFlags precision_;
+  std::uint64_t fragments_ = 0;
+  std::unique_ptr<OffscreenTarget> target_;  ///< of the last camera's extent
 };
 
 }  // namespace atlaswire::render
