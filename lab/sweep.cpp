@@ -17,6 +17,9 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
+/// What every program of the house puts before an error (base/program.h).
+constexpr std::string_view kErrorMark = ": error: ";
+
 /// One point under way.
 struct Running {
   const PlannedPoint* point;
@@ -116,7 +119,8 @@ class Sweep {
     if (code == 0 && fs::exists(store_.point_folder(gone.point->id) / "result.json")) {
       ++outcome_.done;
     } else {
-      const std::string line = last_line(gone.process->error_text());
+      std::string line = last_line(gone.process->error_text());
+      if (const auto at = line.find(kErrorMark); at != std::string::npos) line.erase(0, at + kErrorMark.size());
       outcome_.failed.push_back({gone.point->id, p.finished, code, line.empty() ? "it said nothing" : line});
       p.failure = &outcome_.failed.back();
     }

@@ -55,7 +55,9 @@ def in_order(items):
 
 
 def style(index):
-    return {"color": COLOURS[index % len(COLOURS)], "marker": MARKERS[index % len(MARKERS)]}
+    """Beyond eight series colours come again, with hollow marks."""
+    look = {"color": COLOURS[index % len(COLOURS)], "marker": MARKERS[index % len(MARKERS)]}
+    return look if index < len(COLOURS) else {**look, "markerfacecolor": "white"}
 
 
 def finish(figure, axes, plot, y_label):
@@ -107,7 +109,7 @@ def bars(points, plot, ys):
             places, widths = zip(*found)
             drawn = axes.barh([g + (index - (len(names) - 1) / 2) * height for g in places], widths, height * 0.9,
                               color=COLOURS[index % len(COLOURS)], label=name)
-            axes.bar_label(drawn, fmt="%.3g", padding=3, fontsize=8)
+            axes.bar_label(drawn, fmt="%.4g", padding=3, fontsize=8)
     axes.set_yticks(range(len(groups)), groups)
     axes.invert_yaxis()
     axes.grid(False, axis="y")
@@ -159,12 +161,16 @@ def scatter(points, plot, ys, front):
 
 
 def pictures_of(points, plot, front):
-    """(y, figure) of one plot of the experiment: one each y, but a stack or a shared y label takes all in one."""
+    """(y, figure) of one plot of the experiment: one each y, but a stack or a shared y label takes all in one. What no
+    point has is left out."""
+    measured = [y for y in plot["y"] if any(value(p, y) is not None for p in points)]
+    if not measured:
+        return []
     if plot["kind"] == "stack":
-        return [(plot["y"][0], stack(points, plot, plot["y"]))]
+        return [(measured[0], stack(points, plot, measured))]
     if plot["kind"] == "bars":
-        return [(y, bars(points, plot, [y])) for y in plot["y"]]
+        return [(y, bars(points, plot, [y])) for y in measured]
     if plot["kind"] == "scatter":
-        return [(y, scatter(points, plot, [y], front)) for y in plot["y"]]
-    together = [plot["y"]] if plot["y_label"] and len(plot["y"]) <= 4 else [[y] for y in plot["y"]]
+        return [(y, scatter(points, plot, [y], front)) for y in measured]
+    together = [measured] if plot["y_label"] and len(measured) <= 4 else [[y] for y in measured]
     return [(ys[0], line(points, plot, ys)) for ys in together]
