@@ -108,6 +108,7 @@ struct MethodSettings {
   double max_oversampling = 2.0;       ///< texels a pixel may get when the atlas has room
   std::uint32_t reshade_interval = 1;  ///< each block is shaded at least every n-th frame; new ones at once
   std::uint32_t frames_in_flight = 3;
+  double foveation = 0;  ///< >= 0; octaves of atlas area lost per radian away from the view axis
   AllocatorKind allocator_kind = AllocatorKind::kAuto;
   double level_hysteresis = 0.25;  ///< 0..1 octaves; blocks that stay put against the sharpest size for each
   AllocatorSettings allocator;     ///< its atlas member follows `atlas`

@@ -80,6 +80,9 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
                     "Largest time between predicted views, ms, 1..1000");
   group->add_option("--max-oversampling", render.max_oversampling,
                     "Texels a pixel may get while the atlas has room, 1..8: sharper against more shading");
+  group->add_option("--foveation", render.foveation,
+                    "Octaves of atlas area that surfaces lose per radian away from the view axis, 0..8: a "
+                    "sharper centre against the rim");
   group->add_option("--allocator", raw.allocator,
                     "Who lays the atlas out: device, sequential (on the host), or auto: the device unless it "
                     "is a CPU; the layout is the same");
@@ -189,6 +192,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   render.prediction_step = from_seconds(raw.prediction_step_ms / 1000);
   demand_range("--max-oversampling", render.max_oversampling, 1.0, 8.0);
   render.allocator_kind = parse_allocator(raw.allocator);
+  demand_range("--foveation", render.foveation, 0.0, 8.0);
   demand_range("--level-hysteresis", render.level_hysteresis, 0.0, 1.0);
   demand_range("--reshade-interval", render.reshade_interval, 1U, 60U);
   if (s.grid_bits != 0) demand_range("--grid-bits", s.grid_bits, 8U, 20U);

@@ -4,7 +4,8 @@
 // One 32-bit word a patch, in patch order. 0: not visible in this frame. Otherwise
 //   bits  0..15  log2(area) * 256 + 16384, unsigned and rounded, clamped to [1, 65535]: `area` is what the
 //                whole block should have in texels so that one texel meets one display pixel at the
-//                display's centre ([SAS] eq. 1, before the bias), in pixels squared
+//                display's centre ([SAS] eq. 1, before the bias), in pixels squared,
+//                times 2^(priority - foveation)
 //   bits 16..31  log2(aspect) * 256, two's complement, rounded: `aspect` is width over height of the patch's
 //                layout (base/patch_layout.h, u over v); negative: taller than wide, so a landscape block
 //                holds it transposed

@@ -54,23 +54,27 @@ struct GridConstants {
   uint padding;
 };
 
-/// Push constants of the level pass: the current pose.
+/// Push constants of the level pass: the current pose, and where it looks.
 struct LevelConstants {
   vec4 camera_high;
   vec4 camera_low;
   float pixels_per_radian;  // of the display, at its centre: half its height over tan(half its field of view)
-  uint padding[3];
+  float foveation;          // octaves of area lost per radian away from the gaze
+  float foveal_angle;       // radians around the gaze where none are
+  uint padding;
+  vec4 gaze;  // xyz: unit
 };
 
 /// A patch's corners in the position buffer, and how many triangles they make.
 struct PatchCorners {
   uint position[5];
   uint triangles;
+  float priority;  // octaves of area
 };
 
 /// A chunk that may be drawn: its box and its part of the index buffer.
 struct ChunkCandidate {
-  vec4 low;   // xyz relative to the scene's origin
+  vec4 low;  // xyz relative to the scene's origin
   vec4 high;
   uint index_count;
   uint first_index;
@@ -91,8 +95,8 @@ struct DrawCommand {
 static_assert(sizeof(ViewConstants) == 96 && offsetof(ViewConstants, camera_low) == 80);
 static_assert(sizeof(CullConstants) == 112 && offsetof(CullConstants, extent) == 96);
 static_assert(sizeof(GridConstants) == 16 && offsetof(GridConstants, coarse) == 8);
-static_assert(sizeof(LevelConstants) == 48 && offsetof(LevelConstants, pixels_per_radian) == 32);
-static_assert(sizeof(PatchCorners) == 24 && offsetof(PatchCorners, triangles) == 20);
+static_assert(sizeof(LevelConstants) == 64 && offsetof(LevelConstants, pixels_per_radian) == 32);
+static_assert(sizeof(PatchCorners) == 28 && offsetof(PatchCorners, triangles) == 20);
 static_assert(sizeof(ChunkCandidate) == 48 && offsetof(ChunkCandidate, index_count) == 32);
 static_assert(sizeof(DrawCommand) == 20 && offsetof(DrawCommand, first_instance) == 16);
 }  // namespace atlaswire::render::visibility

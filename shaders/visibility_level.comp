@@ -29,6 +29,13 @@ float edge_pixels(vec3 a, vec3 b) {
   return sine == 0.0 && cosine >= 0.0 ? 0.0 : atan(sine, cosine) * level.pixels_per_radian;
 }
 
+// Octaves of area that a point loses by its angle away from the gaze.
+float foveal_loss(vec3 at) {
+  vec3 to = (at - level.camera_high.xyz) - level.camera_low.xyz;
+  float angle = atan(length(cross(level.gaze.xyz, to)), dot(level.gaze.xyz, to));
+  return level.foveation * max(angle - level.foveal_angle, 0.0);
+}
+
 // Heron's formula in Kahan's order, for slivers.
 float triangle_area(float x, float y, float z) {
   float a = max(x, max(y, z));
@@ -75,5 +82,7 @@ void main() {
       height = max(e12, e04);
     }
   }
-  levels[patch_id] = pack_level(log2(max(area, 1e-30)), log2(max(width, 1e-15) / max(height, 1e-15)));
+  float bias = corners[patch_id].priority;
+  if (level.foveation != 0.0) bias -= min(foveal_loss(p0), foveal_loss(p2));
+  levels[patch_id] = pack_level(log2(max(area, 1e-30)) + bias, log2(max(width, 1e-15) / max(height, 1e-15)));
 }

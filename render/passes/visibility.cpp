@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace atlaswire::render {
@@ -205,7 +206,11 @@ void VisibilityPass::record_levels(const vk::raii::CommandBuffer& commands, cons
   visibility::LevelConstants constants{.camera_high = {},
                                        .camera_low = {},
                                        .pixels_per_radian = static_cast<float>(pixels_per_radian(camera)),
-                                       .padding = {}};
+                                       .foveation = static_cast<float>(settings_.foveation),
+                                       .foveal_angle = std::numbers::pi_v<float> / 18,
+                                       .padding = {},
+                                       .gaze = {}};
+  constants.gaze = glm::vec4(glm::vec3(camera.pose.orientation * glm::dvec3{0, 0, -1}), 0.0F);
   split(camera.pose.position - scene_->scene().origin, constants.camera_high, constants.camera_low);
   compute_to_compute(commands);
   compute_to_draw(commands);

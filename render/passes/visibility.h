@@ -24,7 +24,10 @@ struct VisibilitySettings {
   double fov_scale = 1.2;       ///< >= 1; room for rotation against larger visible sets
   double id_scale = 1.0;        ///< > 0; id pixels per display pixel along a side
   std::uint32_t max_views = 2;  ///< >= 1; poses a frame
-  bool occlusion = true;        ///< drop hidden chunks before their vertices are transformed; same picture
+  /// Octaves of atlas area that surfaces lose per radian away from the view axis, 10 degrees around it
+  /// excepted ([SAS] 4.3); 0: none.
+  double foveation = 0;
+  bool occlusion = true;  ///< drop hidden chunks before their vertices are transformed; same picture
 };
 
 /// What one frame's recording amounts to.

@@ -23,6 +23,7 @@ std::vector<visibility::PatchCorners> patch_corners(const Scene& scene) {
     visibility::PatchCorners& next = corners.emplace_back();
     std::ranges::transform(patch.positions, next.position, [](VertexId id) { return value(id); });
     next.triangles = patch.triangles;
+    next.priority = scene.materials[patch.material].atlas_priority;
   }
   return corners;
 }

@@ -22,7 +22,10 @@ MethodSettings checked(MethodSettings settings) {
 
 VisibilitySettings visibility_settings(const MethodSettings& s) {
   constexpr std::uint32_t kEyes = 2;
-  return {.fov_scale = s.fov_scale, .id_scale = s.id_scale, .max_views = kEyes * s.max_views};
+  return {.fov_scale = s.fov_scale,
+          .id_scale = s.id_scale,
+          .max_views = kEyes * s.max_views,
+          .foveation = s.foveation};
 }
 
 /// Where the visible sets that the frame unites are seen from.

@@ -41,6 +41,8 @@ struct Material {
   float normal_scale = 1.0F;
   PatchClass draw;
   float alpha_cutoff = 0.5F;
+  float atlas_priority =
+      0.0F;  ///< -8..8 octaves of atlas area beside what the surface's size on screen asks for
   std::int32_t base_color_texture = kNoTexture;
   std::int32_t metallic_roughness_texture = kNoTexture;
   std::int32_t normal_texture = kNoTexture;

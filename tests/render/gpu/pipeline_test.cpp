@@ -48,6 +48,7 @@ class LevelPass : public test::GpuTest {
             static_cast<std::uint32_t>(positions.size() + std::min<std::size_t>(i, patch.size() - 1));
       }
       c.triangles = static_cast<std::uint32_t>(patch.size() - 2);
+      c.priority = priority_;
       positions.insert(positions.end(), patch.begin(), patch.end());
       if (marks.size() != hidden) {
         list.push_back(static_cast<std::uint32_t>(marks.size()));
@@ -76,7 +77,10 @@ class LevelPass : public test::GpuTest {
     const LevelConstants constants{.camera_high = glm::vec4(high, 0),
                                    .camera_low = glm::vec4(glm::vec3(camera - glm::dvec3(high)), 0),
                                    .pixels_per_radian = pixels_per_radian,
-                                   .padding = {}};
+                                   .foveation = foveation_,
+                                   .foveal_angle = std::numbers::pi_v<float> / 18,
+                                   .padding = {},
+                                   .gaze = {0, 0, -1, 0}};
     SubmitContext context(device(), "level");
     context.run([&](const vk::raii::CommandBuffer& commands) {
       pipeline.bind(commands, {sets.handle()});
@@ -88,6 +92,9 @@ class LevelPass : public test::GpuTest {
     const auto words = levels.mapped<std::uint32_t>();
     return {words.begin(), words.end()};
   }
+
+  float foveation_ = 0;
+  float priority_ = 0;
 
  private:
   template <class T>
@@ -136,6 +143,24 @@ TEST_F(LevelPass, AgreesWithDoublePrecision) {
     }
     EXPECT_NEAR(level_log2_area(words[i]), std::log2(area), 0.02) << "shape " << i;
     EXPECT_NEAR(level_log2_aspect(words[i]), std::log2(width / height), 0.01) << "shape " << i;
+  }
+}
+
+TEST_F(LevelPass, FoveationAndPriorityChangeTheAreaAlone) {
+  const glm::dvec3 camera{0.1, 0.2, 0.3};
+  const auto plain = run(kShapes, camera, 500.0F);
+  foveation_ = 2;
+  priority_ = 1.5F;
+  const auto biased = run(kShapes, camera, 500.0F);
+  for (std::size_t i = 0; i < kShapes.size(); ++i) {
+    const auto away = [&](const glm::dvec3& p) {
+      const glm::dvec3 to = p - camera;
+      return std::atan2(std::hypot(to.x, to.y), -to.z);
+    };
+    const double angle = std::min(away(kShapes[i][0]), away(kShapes[i][2]));
+    const double loss = 2 * std::max(0.0, angle - std::numbers::pi / 18);
+    EXPECT_NEAR(level_log2_area(biased[i]), level_log2_area(plain[i]) + 1.5 - loss, 0.02) << "shape " << i;
+    EXPECT_EQ(level_log2_aspect(biased[i]), level_log2_aspect(plain[i])) << "shape " << i;
   }
 }
 

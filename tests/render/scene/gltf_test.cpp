@@ -117,7 +117,7 @@ TEST(Gltf, ReadsMaterialsAndLights) {
       R"("extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[)"
       R"({"type":"point","color":[1,0.5,0],"intensity":10,"range":4},{"type":"directional","intensity":3},)"
       R"({"type":"spot","intensity":2,"spot":{"innerConeAngle":0.2,"outerConeAngle":0.6}}]}},)"
-      R"("materials":[{"alphaMode":"MASK","alphaCutoff":0.3,"doubleSided":true,"pbrMetallicRoughness":)"
+      R"("materials":[{"alphaMode":"MASK","alphaCutoff":0.3,"doubleSided":true,"extras":{"atlas_priority":1.5},"pbrMetallicRoughness":)"
       R"({"baseColorFactor":[1,0,0,0.5],"metallicFactor":0.25,"roughnessFactor":0.75}}],)";
   quad.primitive = R"({"attributes":{"POSITION":0},"indices":1,"material":0})";
   quad.node =
@@ -128,6 +128,7 @@ TEST(Gltf, ReadsMaterialsAndLights) {
   const Material& m = scene->materials[scene->patches[0].material];
   EXPECT_EQ(m.draw, (PatchClass{PatchClass::Alpha::kMask, true}));
   EXPECT_FLOAT_EQ(m.alpha_cutoff, 0.3F);
+  EXPECT_FLOAT_EQ(m.atlas_priority, 1.5F);
   EXPECT_FLOAT_EQ(m.metallic, 0.25F);
   ASSERT_EQ(scene->lights.size(), 2U);
   EXPECT_FLOAT_EQ(scene->lights[0].range, 4.0F);
