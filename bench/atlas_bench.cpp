@@ -76,22 +76,15 @@ void device(benchmark::State& state, render::SlotOrder order) {
   state.counters["device_ms"] = 1000 * to_seconds(allocator.device_time()) / static_cast<double>(steps);
 }
 
-BENCHMARK_CAPTURE(host, sequential, render::Strategy::kS0)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(host, quadtree, render::Strategy::kQuadtree)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(device, ranked, render::SlotOrder::kRanked)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(device, drawn, render::SlotOrder::kDrawn)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
-    ->Unit(benchmark::kMillisecond);
+/// The same frames for each, so that their mean work is the same.
+void same_frames(benchmark::internal::Benchmark* bench) {
+  bench->Iterations(600)->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK_CAPTURE(host, sequential, render::Strategy::kS0)->Apply(same_frames);
+BENCHMARK_CAPTURE(host, quadtree, render::Strategy::kQuadtree)->Apply(same_frames);
+BENCHMARK_CAPTURE(device, ranked, render::SlotOrder::kRanked)->Apply(same_frames);
+BENCHMARK_CAPTURE(device, drawn, render::SlotOrder::kDrawn)->Apply(same_frames);
 
 }  // namespace
 }  // namespace atlaswire::bench
