@@ -20,6 +20,13 @@ codec::MetaLimits limits_of(const proto::StreamDescription& stream) {
 
 }  // namespace
 
+std::vector<std::uint32_t> readable_meta_codecs() {
+  std::vector<std::uint32_t> numbers;
+  for (const codec::MetaCodecKind kind : codec::kMetaCodecs)
+    numbers.push_back(static_cast<std::uint32_t>(kind));
+  return numbers;
+}
+
 PairMaker::PairMaker(const proto::StreamDescription& stream, DecodeSettings settings, DecodeTroubles troubles)
     : stream_(stream),
       settings_(std::move(settings)),

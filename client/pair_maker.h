@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace atlaswire::client {
 
@@ -40,6 +41,9 @@ struct DecodeSettings {
   codec::VideoCoding coding = codec::VideoCoding::kH264;
   std::function<Time()> clock = steady_now;  ///< for the durations that pairs carry
 };
+
+/// The meta codecs that a PairMaker reads, for the hello.
+std::vector<std::uint32_t> readable_meta_codecs();
 
 /// Decodes pictures and meta updates as they arrive ([SAS] 3.5), pairs them, keeps the replica and builds
 /// each pair's vertex buffer. No thread of its own. After `peer_broke` it ignores everything.

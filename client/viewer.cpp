@@ -6,11 +6,11 @@
 #include "client/motion.h"
 #include "client/network_thread.h"
 #include "client/output_folder.h"
+#include "client/pair_maker.h"
 #include "client/pair_renderer.h"
 #include "client/picture_writer.h"
 #include "client/reference.h"
 #include "client/run_facts.h"
-#include "codec/meta_update.h"
 #include "render/image/png.h"
 
 #include <fmt/format.h>
@@ -67,7 +67,7 @@ class Viewer {
     hello.vertical_fov = settings_.vertical_fov;
     if (settings_.stereo) hello.eye_separation = settings_.ipd;
     hello.max_picture = {16'384, 16'384};
-    hello.meta_codecs = {static_cast<std::uint32_t>(codec::MetaCodecKind::kPlain)};
+    hello.meta_codecs = readable_meta_codecs();
     hello.wanted_atlas = settings_.wanted_atlas;
     hello.wanted_bit_rate = settings_.wanted_bit_rate;
     hello.wanted_frame_rate = settings_.wanted_frame_rate;

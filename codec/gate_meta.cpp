@@ -46,7 +46,8 @@ void GateMetaEncoder::encode(const MetaUpdate& update, ByteBuffer& out) {
   out.resize(std::max(out.size(), start + least));
 }
 
-GateMetaDecoder::GateMetaDecoder(const MetaLimits& limits) : limits_(limits), state_(unguessable()) {
+GateMetaDecoder::GateMetaDecoder(const MetaLimits& limits, bool believes_all)
+    : limits_(limits), state_(unguessable()), believes_all_(believes_all) {
   AW_ASSERT(limits.grid_bits <= 20);
 }
 
@@ -67,7 +68,7 @@ Result<MetaUpdate> GateMetaDecoder::decode(ByteView bytes) {
                                               most_new(limits_, state_.residents, bytes.size()), nullptr)
                          .code(update.reset, &update);
   broken_ = true;
-  if (error) return *error;
+  if (error && !(believes_all_ && *error == MetaError::kOutOfStep)) return *error;
   const ByteView unread = bytes.last(coder.unread());
   if (std::ranges::any_of(unread, [](std::byte octet) { return octet != std::byte{0}; })) {
     return MetaError::kTrailingBytes;

@@ -29,13 +29,15 @@ class GateMetaEncoder final : public MetaEncoder {
 /// not match (2^-16 of them pass) and refused with kOutOfStep until one with `reset` comes.
 class GateMetaDecoder final : public MetaDecoder {
  public:
-  explicit GateMetaDecoder(const MetaLimits& limits);
+  /// `believes_all`: goes on although an update does not match, for a fuzzer cannot guess hashes.
+  explicit GateMetaDecoder(const MetaLimits& limits, bool believes_all = false);
 
   Result<MetaUpdate> decode(ByteView bytes) override;
 
  private:
   MetaLimits limits_;
   GateState state_;
+  bool believes_all_;
   bool broken_ = false;
 };
 

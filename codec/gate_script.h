@@ -59,10 +59,11 @@ template <class Coder>
 std::optional<MetaError> GateScript<Coder>::code(bool first, MetaUpdate* effect) {
   const std::uint32_t first_vertex = state_->vertices.size();
   code_frame(first);
-  if (!(code_drops() && code_presence() && code_shapes() && code_blocks() && code_hash())) return error_;
+  if (!(code_drops() && code_presence() && code_shapes() && code_blocks())) return error_;
   if (effect != nullptr) report(*effect, first_vertex);
   for (const Placement& p : placements_) state_->residents.block(p.resident) = p.block;
   state_->residents.merge(arrivals_);
+  if (!code_hash()) return error_;
   return std::nullopt;
 }
 

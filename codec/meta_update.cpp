@@ -5,6 +5,23 @@
 
 namespace atlaswire::codec {
 
+const char* name(MetaCodecKind kind) {
+  switch (kind) {
+    case MetaCodecKind::kPlain:
+      return "plain";
+    case MetaCodecKind::kGate:
+      return "gate";
+  }
+  return "unknown";
+}
+
+std::optional<MetaCodecKind> find_meta_codec(std::string_view name_of_one) {
+  for (const MetaCodecKind kind : kMetaCodecs) {
+    if (name(kind) == name_of_one) return kind;
+  }
+  return std::nullopt;
+}
+
 std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLimits& limits) {
   switch (kind) {
     case MetaCodecKind::kPlain:

@@ -12,6 +12,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 namespace atlaswire::codec {
@@ -60,7 +62,8 @@ struct MetaLimits {
 /// it.
 inline constexpr std::size_t kMaxMetaBody = std::size_t{32} << 20U;
 
-/// Turns updates into bytes; one per client stream, may keep state between updates. Not thread-safe.
+/// Turns updates into bytes; one per client stream, may keep state between updates: then the other end must
+/// get every one, in order. An update with `reset` starts anew. Not thread-safe.
 class MetaEncoder {
  public:
   virtual ~MetaEncoder() = default;
@@ -68,7 +71,8 @@ class MetaEncoder {
   virtual void encode(const MetaUpdate& update, ByteBuffer& out) = 0;
 };
 
-/// The other end. Safe on hostile bytes: bounded memory and time, an Error and no effect on failure.
+/// The other end. Safe on hostile bytes: bounded memory and time. After an Error, one that keeps state
+/// refuses everything until an update with `reset` comes; others go on.
 class MetaDecoder {
  public:
   virtual ~MetaDecoder() = default;
@@ -76,7 +80,17 @@ class MetaDecoder {
 };
 
 /// Which meta codec both ends use; a number on the wire.
-enum class MetaCodecKind : std::uint8_t { kPlain = 1, kGate = 2 };
+enum class MetaCodecKind : std::uint8_t {
+  kPlain = 1,  ///< every update alone, zstd: simple, large
+  kGate = 2,   ///< incremental: a quarter of the bytes, or less
+};
+
+/// All of them, those with the fewest bytes first.
+inline constexpr std::array kMetaCodecs{MetaCodecKind::kGate, MetaCodecKind::kPlain};
+
+/// "plain", "gate": as settings and reports call it.
+const char* name(MetaCodecKind kind);
+std::optional<MetaCodecKind> find_meta_codec(std::string_view name);
 
 std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLimits& limits);
 std::unique_ptr<MetaDecoder> make_meta_decoder(MetaCodecKind kind, const MetaLimits& limits);

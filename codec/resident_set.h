@@ -65,7 +65,7 @@ class ResidentSet {
 
 inline void ResidentSet::note(std::uint32_t index, bool visible) {
   Presence& p = presences_[index];
-  p.history = static_cast<std::uint8_t>(p.history << 1U | static_cast<unsigned>(visible));
+  p.history = static_cast<std::uint8_t>(std::uint32_t{p.history} << 1U | static_cast<std::uint32_t>(visible));
   if (p.visible == visible) {
     if (p.calm != 255) ++p.calm;
     return;

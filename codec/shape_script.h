@@ -384,7 +384,8 @@ std::uint32_t ShapeScript<Coder>::code_corner(const Expected& expected, std::spa
   const Offers offers = offers_for(expected, taken);
   for (std::uint32_t i = 0; i < offers.count; ++i) {
     const Offer& offered = offers.list[i];
-    const int relative = std::bit_width(offered.distance) - static_cast<int>(expected.scale) + 6;
+    const int relative =
+        static_cast<int>(std::bit_width(offered.distance)) - static_cast<int>(expected.scale) + 6;
     const auto near = static_cast<std::uint32_t>(
         std::clamp(relative, 0, static_cast<int>(GateModels::kDistanceClasses) - 1));
     const std::uint32_t closes = expected.following != kNone ? 1 + offered.kind : 0;

@@ -2,6 +2,7 @@
 
 #include "base/program.h"
 #include "base/random.h"
+#include "client/pair_maker.h"
 
 #include <algorithm>
 #include <array>

@@ -26,11 +26,14 @@ codec::I420View view_of(const render::I420Picture& picture) {
 
 AtlasStream::AtlasStream(const StreamSettings& settings, std::shared_ptr<const render::Scene> scene,
                          std::unique_ptr<render::Method> method)
-    : method_(std::move(method)),
+    : preferred_meta_codec_(settings.meta_codec),
+      method_(std::move(method)),
       tracker_(std::move(scene), settings.grid_bits),
       schedule_({.interval = settings.video.intra_interval}),
       video_(video_settings(settings, method_->picture_extent())),
-      meta_(codec::make_meta_encoder(codec::MetaCodecKind::kPlain, tracker_.limits(settings.render.atlas))) {}
+      limits_(tracker_.limits(settings.render.atlas)),
+      meta_codec_(preferred_meta_codec_),
+      meta_(codec::make_meta_encoder(meta_codec_, limits_)) {}
 
 PreparedFrame AtlasStream::render(const ViewRequest& request) {
   if (request.refresh) schedule_.ask_for_loss();
@@ -45,6 +48,7 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
   prepared.rendered =
       method_->render({next_frame_, request.camera, request.cover, prepared.intra, request.hints});
   prepared.update = update_for(request, prepared.rendered);
+  if (prepared.update.reset) prepared.meta_codec = request.meta_codec.value_or(preferred_meta_codec_);
   prepared.rendered.change = nullptr;
   next_frame_ = next(next_frame_);
   return prepared;
@@ -83,6 +87,10 @@ Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
   frame.cover = prepared.cover;
   frame.idr = picture->idr;
   frame.video = std::move(picture->bytes);
+  if (prepared.meta_codec && *prepared.meta_codec != meta_codec_) {
+    meta_codec_ = *prepared.meta_codec;
+    meta_ = codec::make_meta_encoder(meta_codec_, limits_);
+  }
   frame.meta.reserve(last_meta_bytes_ + last_meta_bytes_ / 4);
   meta_->encode(prepared.update, frame.meta);
   last_meta_bytes_ = frame.meta.size();
@@ -109,6 +117,7 @@ proto::StreamDescription describe(const render::Scene& scene, const AtlasStream&
   d.atlas = settings.render.atlas;
   d.has_coverage = scene.requirements.alpha();
   d.grid = stream.grid();
+  d.meta_codec = static_cast<std::uint32_t>(stream.preferred_meta_codec());
   d.max_vertices = std::max(1U, static_cast<std::uint32_t>(scene.positions.size()));
   d.max_patches = std::max(1U, static_cast<std::uint32_t>(scene.patches.size()));
   d.frame_rate = settings.max_fps;

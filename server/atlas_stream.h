@@ -23,6 +23,8 @@ class AtlasStream final : public FrameMaker {
   Result<EncodedFrame> encode(PreparedFrame prepared) override;
 
   [[nodiscard]] Extent2D picture_extent() const { return method_->picture_extent(); }
+  /// For clients that know it; a restart may choose another.
+  [[nodiscard]] codec::MetaCodecKind preferred_meta_codec() const { return preferred_meta_codec_; }
   [[nodiscard]] const PositionGrid& grid() const { return tracker_.grid(); }
   /// SPS and PPS, Annex B; empty before the first frame. Encoding thread.
   [[nodiscard]] const ByteBuffer& parameter_sets() const { return video_.parameter_sets(); }
@@ -33,6 +35,7 @@ class AtlasStream final : public FrameMaker {
   [[nodiscard]] codec::MetaUpdate update_for(const ViewRequest& request,
                                              const render::RenderedFrame& rendered);
 
+  const codec::MetaCodecKind preferred_meta_codec_;
   // Rendering thread.
   std::unique_ptr<render::Method> method_;
   ReplicaTracker tracker_;
@@ -41,6 +44,8 @@ class AtlasStream final : public FrameMaker {
   bool told_ = false;  ///< clients have been told the whole once
   // Encoding thread.
   codec::VideoEncoder video_;
+  codec::MetaLimits limits_;
+  codec::MetaCodecKind meta_codec_;
   std::unique_ptr<codec::MetaEncoder> meta_;
   std::size_t last_meta_bytes_ = 0;
 };

@@ -37,6 +37,7 @@ std::unique_ptr<StreamRunner> Daemon::Impl::start_stream(Connection& connection)
   runner.cover = settings_.stream.cover;
   runner.camera = client_camera(hello.display, hello.vertical_fov, source_->description().near_plane);
   runner.eye_separation = hello.eye_separation;
+  runner.meta_codec = connection.session().meta_codec();
   // Always told, since a warm stream may come from a client with another wish. Constant quality has no rate.
   if (const BitRate rate = settings_.stream.video.bit_rate; rate.bits_per_second != 0) {
     runner.bit_rate = std::min(rate, hello.wanted_bit_rate.value_or(rate));

@@ -22,7 +22,8 @@ struct ViewRequest {
   Duration cover{};
   bool refresh = false;  ///< somebody lost a picture: make an I-frame, however recent the last
   bool restart = false;  ///< somebody knows nothing yet: an I-frame, and a meta update that tells all
-  std::optional<BitRate> bit_rate;  ///< from this frame on
+  std::optional<codec::MetaCodecKind> meta_codec;  ///< from a `restart` on; nullopt: the settings'
+  std::optional<BitRate> bit_rate;                 ///< from this frame on
   render::ViewHints hints;
 };
 
@@ -33,6 +34,7 @@ struct PreparedFrame {
   bool intra = false;
   render::RenderedFrame rendered;  ///< `change` is null: `update` has it
   codec::MetaUpdate update;
+  std::optional<codec::MetaCodecKind> meta_codec;  ///< from this update on
   std::optional<BitRate> bit_rate;
   proto::StageStamps stamps;  ///< filled by whoever owns a clock
 };

@@ -13,8 +13,6 @@ namespace atlaswire::server {
 
 namespace {
 
-constexpr std::uint32_t kMetaCodecs[] = {static_cast<std::uint32_t>(codec::MetaCodecKind::kPlain)};
-
 ReliableOutbox::Settings reliable_settings(const SessionSettings& s) {
   return {s.delivery.tcp_queue_bytes, s.admission.stall_timeout};
 }
@@ -119,9 +117,11 @@ void Session::on_bad_bytes(const Error& error, Time now) {
 
 void Session::accept(proto::StreamDescription stream, Time now) {
   AW_ASSERT(state_ == SessionState::kHelloReceived);
-  const auto terms = proto::agree(hello_, kMetaCodecs, stream.picture);
+  const std::array meta_codecs{stream.meta_codec, static_cast<std::uint32_t>(codec::MetaCodecKind::kPlain)};
+  const auto terms = proto::agree(hello_, meta_codecs, stream.picture);
   if (!terms) return refuse(proto::refusal_for(terms.error()), now);
   stream.meta_codec = terms->meta_codec;
+  meta_codec_ = static_cast<codec::MetaCodecKind>(terms->meta_codec);
   stream.ssrc = keys_.ssrc;
   reader_.set_limit(proto::kMaxEnvelope);
   reliable_.push(proto::ServerHello{terms->version, keys_.id, keys_.token, std::move(stream)}, now);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/ids.h"
+#include "codec/meta_update.h"
 #include "proto/address_gate.h"
 #include "proto/framing.h"
 #include "proto/messages.h"
@@ -73,9 +74,12 @@ class Session {
   void on_stream_end(const std::string& why, Time now);
   /// In kHelloReceived: what the client asked for.
   [[nodiscard]] const proto::ClientHello& hello() const { return hello_; }
-  /// Answers the hello: with a ServerHello, or a refusal when client and stream do not fit.
+  /// Answers the hello: with a ServerHello, or a refusal when client and stream do not fit. Meta updates will
+  /// be in the stream's `meta_codec` if the client knows it, else in the plain form.
   void accept(proto::StreamDescription stream, Time now);
   void refuse(const proto::Refusal& refusal, Time now);
+  /// After accept(): the form that was agreed on.
+  [[nodiscard]] codec::MetaCodecKind meta_codec() const { return meta_codec_; }
   /// Says goodbye and closes, once that has left or the drain timeout passed.
   void close(proto::Goodbye::Reason reason, const std::string& text, Time now);
 
@@ -137,6 +141,7 @@ class Session {
   [[nodiscard]] std::optional<Time> timeout() const;
 
   SessionSettings settings_;
+  codec::MetaCodecKind meta_codec_ = codec::MetaCodecKind::kPlain;
   SessionKeys keys_;
   std::function<proto::Nonce()> fresh_nonce_;
   SessionState state_ = SessionState::kWaitingHello;

@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/time.h"
 #include "base/units.h"
+#include "codec/meta_update.h"
 #include "codec/video.h"
 #include "render/method.h"
 
@@ -32,6 +33,7 @@ struct StreamSettings {
   double max_fps = 15;  ///< frames a second that are started at most, > 0
   std::uint32_t grid_bits =
       0;  ///< of the client replica's position grid, 8..20; 0: PositionGrid::suited_bits
+  codec::MetaCodecKind meta_codec = codec::kMetaCodecs.front();  ///< for clients that know it
   CoverSettings cover;
 };
 

@@ -105,6 +105,7 @@ ViewRequest StreamRunner::make_request() {
   request.cover = cover_.cover();
   request.refresh = std::exchange(refresh_, false);
   request.restart = std::exchange(first_, false);
+  request.meta_codec = settings_.meta_codec;
   request.bit_rate = rate_.take();
   return request;
 }

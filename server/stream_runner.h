@@ -31,6 +31,7 @@ class StreamRunner {
     double eye_separation = 0;        ///< metres; above 0 the client's two eyes are beside the pose
     std::optional<BitRate> bit_rate;  ///< to hold at whatever frame rate comes about; nullopt: the stream's
     double encoder_fps = 15;          ///< the frame rate that the encoder was told
+    std::optional<codec::MetaCodecKind> meta_codec;  ///< nullopt: the stream's
   };
   struct Callbacks {
     /// Makes the stream, or hands out a warm one; called on the rendering thread. May throw.

@@ -2,7 +2,8 @@
 
 #include "codec/plain_meta.h"
 #include "tests/codec/meta_support.h"
-#include "tests/codec/meta_walk.h"
+#include "tests/codec/scene_walk.h"
+#include "tests/codec/shown_patches.h"
 
 #include <gtest/gtest.h>
 

@@ -76,7 +76,7 @@ TEST_F(AtlasStreamTest, AClientCanFollowEveryFrame) {
   codec::VideoDecoder video(stream->picture_extent());
   const ReplicaTracker limits(scene, settings.grid_bits);
   const auto meta =
-      codec::make_meta_decoder(codec::MetaCodecKind::kPlain, limits.limits(settings.render.atlas));
+      codec::make_meta_decoder(settings.meta_codec, limits.limits(settings.render.atlas));
   Replica replica;
   for (std::uint32_t n = 0; n < 8; ++n) {
     request.camera.pose.position.x += 0.2;
@@ -101,7 +101,7 @@ TEST_F(AtlasStreamTest, RestartTellsANewcomerAll) {
   const auto stream = make_stream();
   const ReplicaTracker limits(scene, settings.grid_bits);
   const auto meta =
-      codec::make_meta_decoder(codec::MetaCodecKind::kPlain, limits.limits(settings.render.atlas));
+      codec::make_meta_decoder(settings.meta_codec, limits.limits(settings.render.atlas));
   Replica old_client;
   for (int n = 0; n < 3; ++n) {
     request.camera.pose.position.z += 0.3;
@@ -117,6 +117,21 @@ TEST_F(AtlasStreamTest, RestartTellsANewcomerAll) {
   old_client.apply(update);
   EXPECT_EQ(newcomer.patches, old_client.patches);
   EXPECT_EQ(newcomer.vertices, old_client.vertices);
+}
+
+TEST_F(AtlasStreamTest, RestartMayChooseAnotherMetaCodec) {
+  const auto stream = make_stream();
+  const codec::MetaLimits limits = ReplicaTracker(scene, settings.grid_bits).limits(settings.render.atlas);
+  for (const codec::MetaCodecKind kind :
+       {codec::MetaCodecKind::kPlain, codec::MetaCodecKind::kGate, codec::MetaCodecKind::kPlain}) {
+    const auto meta = codec::make_meta_decoder(kind, limits);
+    request.meta_codec = kind;
+    for (const bool restart : {true, false}) {
+      request.restart = restart;
+      request.camera.pose.position.x += 0.1;
+      EXPECT_TRUE(meta->decode(stream->encode(stream->render(request)).value().meta));
+    }
+  }
 }
 
 TEST_F(AtlasStreamTest, RefreshBringsAnEarlyIntraFrame) {

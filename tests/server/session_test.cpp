@@ -26,6 +26,22 @@ TEST_F(SessionHandshake, AnswersAHelloWithTheStreamAndItsKeys) {
   EXPECT_EQ(session->state(), SessionState::kWaitingAddress);
 }
 
+TEST_F(SessionHandshake, AgreesOnTheBestFormOfMetaUpdatesThatBothKnow) {
+  proto::StreamDescription offered = stream();
+  offered.meta_codec = static_cast<std::uint32_t>(codec::MetaCodecKind::kGate);
+  for (const std::vector<std::uint32_t>& known : {std::vector<std::uint32_t>{1, 2}, {1}}) {
+    start();
+    proto::ClientHello client;
+    client.meta_codecs = known;
+    feed(client);
+    session->accept(offered, now);
+    const auto answer = replies();
+    ASSERT_EQ(answer.size(), 1U);
+    EXPECT_EQ(std::get<proto::ServerHello>(answer[0]).stream.meta_codec, known.back());
+    EXPECT_EQ(static_cast<std::uint32_t>(session->meta_codec()), known.back());
+  }
+}
+
 TEST_F(SessionHandshake, RefusesAnotherVersionAndNamesBoth) {
   start();
   proto::ClientHello future;
