@@ -1,0 +1,82 @@
+// Records the meta updates of a walk through a scene, as a stream makes them, for codec_bench.
+#include "base/program.h"
+#include "bench/meta_recording.h"
+#include "render/camera.h"
+#include "render/gpu/open_device.h"
+#include "render/scene/camera_path.h"
+#include "render/scene/load.h"
+#include "server/atlas_stream.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+using namespace atlaswire;
+
+namespace {
+
+struct Options {
+  std::string scene = "atrium";
+  std::string path = "atrium";
+  std::string out = "updates.meta";
+  std::uint32_t frames = 300;
+  double rate = 30;
+  std::uint32_t width = 480;
+  std::uint32_t height = 270;
+  std::uint32_t atlas = 1024;
+  std::uint32_t grid_bits = 0;
+};
+
+void record(const Options& options) {
+  auto scene = std::make_shared<const render::Scene>(render::load_scene(options.scene).value());
+  const render::CameraPath path = render::CameraPath::load(options.path).value();
+  const auto device = render::open_device({});
+  server::StreamSettings settings;
+  settings.render.atlas = {options.atlas, options.atlas};
+  settings.grid_bits = options.grid_bits;
+  settings.max_fps = options.rate;
+  settings.video.encoder = "raw";
+  settings.video.intra_interval = 5;
+  server::AtlasStream stream(settings, scene, render::make_method("sas", *device, scene, settings.render));
+  bench::MetaRecording recording{
+      .limits = server::ReplicaTracker(scene, options.grid_bits).limits(settings.render.atlas)};
+  server::ViewRequest request;
+  request.camera.extent = {options.width, options.height};
+  request.cover = from_seconds(0.05);
+  const Duration step = from_seconds(1 / options.rate);
+  for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
+    const Duration now = frame * step;
+    request.camera.pose = path.at(now);
+    set_velocities_from(path.at(now - step), request.camera.pose, step);
+    request.restart = frame == 0;
+    server::PreparedFrame prepared = stream.render(request);
+    recording.updates.push_back(prepared.update);
+    stream.encode(std::move(prepared)).value();
+  }
+  bench::write_recording(recording, options.out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Records a stream's meta updates");
+  app.add_option("--scene", options.scene, "Built-in name or glTF file");
+  app.add_option("--path", options.path, "Built-in name or CSV file");
+  app.add_option("--out", options.out, "File to write");
+  app.add_option("--frames", options.frames, "How many");
+  app.add_option("--rate", options.rate, "Frames a second");
+  app.add_option("--width", options.width, "Display pixels");
+  app.add_option("--height", options.height, "Display pixels");
+  app.add_option("--atlas", options.atlas, "Texels a side");
+  app.add_option("--grid-bits", options.grid_bits, "0: suited to the scene");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    record(options);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "codec_record: {}\n", e.what());
+    return 1;
+  }
+  return 0;
+}
