@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto again = mirror.decode(bytes);
     AW_ASSERT(again);
     AW_ASSERT(again->frame == update->frame && again->reset == update->reset);
-    AW_ASSERT(again->added.size() >= update->added.size() - update->removed.size());
+    AW_ASSERT(again->added.size() + update->removed.size() >= update->added.size());
   }
   return 0;
 }
