@@ -17,14 +17,17 @@ ProgramError cannot_write(const std::string& path) {
   return {ExitCode::kCannotWrite, fmt::format("--ready-file {}: cannot write there", path)};
 }
 
+/// Where the file is written before it is renamed: scripts wait for `path` itself.
+std::string beside(const std::string& path) { return fmt::format("{}.{}", path, ::getpid()); }
+
 }  // namespace
 
 ReadyFile::ReadyFile(std::string path) : path_(std::move(path)) {
   if (path_.empty()) return;
   std::remove(path_.c_str());
   // Found out now, not after the warm-up.
-  const bool writable = std::ofstream(path_).good();
-  std::remove(path_.c_str());
+  const bool writable = std::ofstream(beside(path_)).good();
+  std::remove(beside(path_).c_str());
   if (!writable) throw cannot_write(path_);
 }
 
@@ -34,12 +37,12 @@ ReadyFile::~ReadyFile() {
 
 void ReadyFile::write(std::uint16_t port) const {
   if (path_.empty()) return;
-  const std::string beside = fmt::format("{}.{}", path_, ::getpid());
-  std::ofstream file(beside, std::ios::trunc);
+  const std::string fresh = beside(path_);
+  std::ofstream file(fresh, std::ios::trunc);
   file << fmt::format("{{\"port\":{},\"pid\":{}}}\n", port, ::getpid());
   file.close();
-  if (file && std::rename(beside.c_str(), path_.c_str()) == 0) return;
-  std::remove(beside.c_str());
+  if (file && std::rename(fresh.c_str(), path_.c_str()) == 0) return;
+  std::remove(fresh.c_str());
   throw cannot_write(path_);
 }
 
