@@ -1,6 +1,7 @@
 #include "tests/netsim/loopback.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -12,7 +13,10 @@ std::pair<int, std::string> netsim(const std::string& arguments) {
   return run_command(std::string(AW_NETSIM_PROGRAM) + " " + arguments);
 }
 
-std::string temporary(const std::string& name) { return testing::TempDir() + "netsim_program_test_" + name; }
+/// Each test is a process of its own, and two may run at once.
+std::string temporary(const std::string& name) {
+  return testing::TempDir() + "netsim_program_test_" + std::to_string(getpid()) + "_" + name;
+}
 
 TEST(NetsimProgram, ExplainsItself) {
   const auto [code, help] = netsim("--help");

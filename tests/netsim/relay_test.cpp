@@ -5,6 +5,7 @@
 #include "tests/netsim/loopback.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -18,7 +19,10 @@ namespace {
 using Kind = LoopbackSocket::Kind;
 using std::chrono::milliseconds;
 
-std::string temporary(const std::string& name) { return testing::TempDir() + "netsim_relay_test_" + name; }
+/// Each test is a process of its own, and two may run at once.
+std::string temporary(const std::string& name) {
+  return testing::TempDir() + "netsim_relay_test_" + std::to_string(getpid()) + "_" + name;
+}
 
 /// A relay to `target` on a thread of its own.
 class RunningRelay {
