@@ -120,7 +120,8 @@ class Sweep {
       ++outcome_.done;
     } else {
       std::string line = last_line(gone.process->error_text());
-      if (const auto at = line.find(kErrorMark); at != std::string::npos) line.erase(0, at + kErrorMark.size());
+      if (const auto at = line.find(kErrorMark); at != std::string::npos)
+        line.erase(0, at + kErrorMark.size());
       outcome_.failed.push_back({gone.point->id, p.finished, code, line.empty() ? "it said nothing" : line});
       p.failure = &outcome_.failed.back();
     }

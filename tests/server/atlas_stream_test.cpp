@@ -75,8 +75,7 @@ TEST_F(AtlasStreamTest, AClientCanFollowEveryFrame) {
   const auto stream = make_stream();
   codec::VideoDecoder video(stream->picture_extent());
   const ReplicaTracker limits(scene, settings.grid_bits);
-  const auto meta =
-      codec::make_meta_decoder(settings.meta_codec, limits.limits(settings.render.atlas));
+  const auto meta = codec::make_meta_decoder(settings.meta_codec, limits.limits(settings.render.atlas));
   Replica replica;
   for (std::uint32_t n = 0; n < 8; ++n) {
     request.camera.pose.position.x += 0.2;
@@ -100,8 +99,7 @@ TEST_F(AtlasStreamTest, AClientCanFollowEveryFrame) {
 TEST_F(AtlasStreamTest, RestartTellsANewcomerAll) {
   const auto stream = make_stream();
   const ReplicaTracker limits(scene, settings.grid_bits);
-  const auto meta =
-      codec::make_meta_decoder(settings.meta_codec, limits.limits(settings.render.atlas));
+  const auto meta = codec::make_meta_decoder(settings.meta_codec, limits.limits(settings.render.atlas));
   Replica old_client;
   for (int n = 0; n < 3; ++n) {
     request.camera.pose.position.z += 0.3;
