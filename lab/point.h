@@ -27,7 +27,7 @@ struct PointSettings {
   double prediction_step_ms = 1000.0 / 30;  ///< between them (sas)
   double fov_scale = 1.2;                   ///< enlargement of the server's view, >= 1
   double id_scale = 1;                      ///< id pixels per display pixel along a side (sas)
-  double max_oversampling = 2;              ///< texels a pixel may get while the atlas has room, 1..8 (sas)
+  double max_oversampling = 4;              ///< texels a pixel may get while the atlas has room, 1..8 (sas)
   std::uint32_t reshade_interval = 1;       ///< frames (sas)
   std::uint32_t grid_bits = 0;              ///< of the replica's grid; 0: suited to the scene (sas)
   // Time and network.
@@ -41,8 +41,8 @@ struct PointSettings {
   // Coding.
   double bitrate_mbps = 0;  ///< of all channels together; 0: pictures are not coded
   int qp = -1;              ///< 0..51: constant quantizer instead of a bit rate; -1: by `bitrate_mbps`
-  std::string preset = "ultrafast";  ///< of x264
-  std::uint32_t intra_interval = 5;  ///< frames from I-frame to I-frame ([SAS] 5.8)
+  std::string preset = "ultrafast";   ///< of x264
+  std::uint32_t intra_interval = 30;  ///< frames from I-frame to I-frame; [SAS] 5.8 has 5
   // What is measured.
   std::uint32_t measure_every = 8;  ///< displayed frames from one compared with the truth to the next
   bool measure_flip = true;         ///< FLIP as well, the slowest of the metrics

@@ -105,7 +105,7 @@ struct MethodSettings {
   double id_scale = 1.0;  ///< id buffer pixels per display pixel along a side; small triangles against time
   std::uint32_t max_views = 2;  ///< visible sets united per frame
   Duration prediction_step = std::chrono::microseconds(33'333);
-  double max_oversampling = 2.0;       ///< texels a pixel may get when the atlas has room
+  double max_oversampling = 4.0;       ///< texels a pixel may get when the atlas has room
   std::uint32_t reshade_interval = 1;  ///< each block is shaded at least every n-th frame; new ones at once
   std::uint32_t frames_in_flight = 3;
   double foveation = 0;  ///< >= 0; octaves of atlas area lost per radian away from the view axis

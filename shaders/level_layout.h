@@ -3,11 +3,12 @@
 //
 // One 32-bit word a patch, in patch order. 0: not visible in this frame. Otherwise
 //   bits  0..15  log2(area) * 256 + 16384, unsigned and rounded, clamped to [1, 65535]: `area` is what the
-//                whole block should have in texels so that one texel meets one display pixel at the
-//                display's centre ([SAS] eq. 1, before the bias), in pixels squared,
+//                whole block should have in texels so that one texel's step meets one display pixel at the
+//                display's centre: (U + 1) (V + 1), at most 4 U V, for a patch of U by V pixels ([SAS] eq. 1,
+//                before the bias; the paper has U V, although a side of w texels makes w - 1 steps),
 //                times 2^(priority - foveation)
-//   bits 16..31  log2(aspect) * 256, two's complement, rounded: `aspect` is width over height of the patch's
-//                layout (base/patch_layout.h, u over v); negative: taller than wide, so a landscape block
+//   bits 16..31  log2(aspect) * 256, two's complement, rounded: `aspect` is width over height of the block
+//                in the patch's layout (base/patch_layout.h, u over v), (U + 1) / (V + 1); negative: taller than wide, so a landscape block
 //                holds it transposed
 #ifndef ATLASWIRE_SHADERS_LEVEL_LAYOUT_H
 #define ATLASWIRE_SHADERS_LEVEL_LAYOUT_H

@@ -82,7 +82,13 @@ void main() {
       height = max(e12, e04);
     }
   }
+  // Corners lie on the outer texels' centres ([SAS] fig. 6), so w texels make w - 1 steps: one more a side, but no
+  // more than four times the area, for long slivers show few pixels.
+  float side_u = sqrt(area * max(width, 1e-15) / max(height, 1e-15));
+  float side_v = area / max(side_u, 1e-15);
   float bias = corners[patch_id].priority;
   if (level.foveation != 0.0) bias -= min(foveal_loss(p0), foveal_loss(p2));
-  levels[patch_id] = pack_level(log2(max(area, 1e-30)) + bias, log2(max(width, 1e-15) / max(height, 1e-15)));
+  levels[patch_id] =
+      pack_level(log2(min((side_u + 1.0) * (side_v + 1.0), 4.0 * max(area, 1e-30))) + bias,
+                 log2((side_u + 1.0) / (side_v + 1.0)));
 }

@@ -370,7 +370,8 @@ TEST_F(Visibility, FollowsADisplayThatChangesSize) {
 }
 
 TEST_F(Visibility, LevelsAreThoseOfTheCurrentPoseInDisplayPixels) {
-  // One square metre facing the camera at 100 m: (pixels per radian / 100)^2, whatever the id buffer's scale.
+  // One square metre facing the camera at 100 m: pixels per radian / 100 steps a side, whatever the id
+  // buffer's scale.
   TinyScene scene;
   scene.material(kOpaque);
   const PatchId wall = scene.wall(-0.5F, -0.5F, 0.5F, 0.5F, -100);
@@ -381,9 +382,26 @@ TEST_F(Visibility, LevelsAreThoseOfTheCurrentPoseInDisplayPixels) {
   for (const double id_scale : {0.5, 1.0}) {
     const Seen seen = look(made, camera, {.fov_scale = 1.2, .id_scale = id_scale});
     ASSERT_THAT(seen.patches, ElementsAre(value(wall)));
-    EXPECT_NEAR(level_log2_area(seen.words[0]), 2 * std::log2(pixels), 0.01);
+    EXPECT_NEAR(level_log2_area(seen.words[0]), 2 * std::log2(pixels + 1), 0.01);
     EXPECT_NEAR(level_log2_aspect(seen.words[0]), 0, 0.01);
   }
+}
+
+TEST_F(Visibility, LevelsLeaveRoomForTheHalfTexelAtABlocksEdges) {
+  // U x V pixels want (U + 1) x (V + 1) texels; a sliver no more than four for each of its pixels.
+  TinyScene scene;
+  scene.material(kOpaque);
+  scene.wall(-0.5F, -0.25F, 0.5F, 0.25F, -10);
+  scene.wall(-2, 1, 2, 1.004F, -10);  // 0.4 pixels high
+  const auto made = scene.finish();
+  Camera camera = small_camera();
+  camera.extent = {1920, 1080};
+  const double pixels = 1080 / 2.0 / std::tan(camera.vertical_fov / 2) / 10;
+  const Seen seen = look(made, camera, {.fov_scale = 1.2, .id_scale = 2.0});
+  ASSERT_EQ(seen.patches.size(), 2U);
+  EXPECT_NEAR(level_log2_area(seen.words[0]), std::log2((pixels + 1) * (pixels / 2 + 1)), 0.02);
+  EXPECT_NEAR(level_log2_aspect(seen.words[0]), std::log2((pixels + 1) / (pixels / 2 + 1)), 0.02);
+  EXPECT_NEAR(level_log2_area(seen.words[1]), 2 + 2 * std::log2(pixels) + std::log2(4 * 0.004), 0.2);
 }
 
 }  // namespace
