@@ -24,12 +24,12 @@ struct I420View {
 
 /// Settings of an H.264 encoder ([SAS] 3.4, 5.8). CAVLC, one reference, no B-frames, no look-ahead always.
 struct VideoEncoderSettings {
-  Extent2D extent;                   ///< both sides even
-  double frame_rate = 15;            ///< nominal, for rate control
-  BitRate bit_rate{10'000'000};      ///< 0: constant quantizer `qp`
-  int qp = 20;                       ///< 0..51, used when bit_rate is 0
-  std::uint32_t intra_interval = 5;  ///< frames from IDR to IDR; 0: only when asked
-  std::string preset = "ultrafast";  ///< of x264
+  Extent2D extent;                    ///< both sides even
+  double frame_rate = 15;             ///< nominal, for rate control
+  BitRate bit_rate{10'000'000};       ///< 0: constant quantizer `qp`
+  int qp = 20;                        ///< 0..51, used when bit_rate is 0
+  std::uint32_t intra_interval = 30;  ///< frames from IDR to IDR; 0: only when asked; [SAS] 5.8 has 5
+  std::string preset = "ultrafast";   ///< of x264
   std::string encoder = "auto";  ///< "auto", "h264_nvenc", "h264_vaapi", "libx264"; "raw": see VideoCoding
   std::uint32_t threads = 2;     ///< slices encoded side by side; adds no delay
   std::uint32_t max_slice_bytes = 0;  ///< 0: one slice a thread

@@ -19,6 +19,7 @@ VideoEncoderSettings software(BitRate rate = {2'000'000}) {
   VideoEncoderSettings settings;
   settings.extent = kExtent;
   settings.bit_rate = rate;
+  settings.intra_interval = 5;  // these pictures hardly change: without I-frames they cannot use the rate
   settings.encoder = "libx264";
   return settings;
 }

@@ -36,7 +36,7 @@ TEST(Options, DefaultsServeTheAtriumOnLoopback) {
   EXPECT_EQ(options.settings.listen, "127.0.0.1");
   EXPECT_EQ(options.settings.port, 7400);
   EXPECT_EQ(options.settings.stream.render.atlas, (Extent2D{1024, 1024}));
-  EXPECT_EQ(options.settings.stream.video.intra_interval, 5U);
+  EXPECT_EQ(options.settings.stream.video.intra_interval, 30U);
   EXPECT_FALSE(options.settings.stream.cover.fixed);
   EXPECT_FALSE(options.settings.mirror);
 }
