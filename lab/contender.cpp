@@ -34,4 +34,10 @@ render::Camera display_camera(const PointSettings& settings) {
   return camera;
 }
 
+render::LensCorrection display_lens(const PointSettings& settings) {
+  const Result<render::LensCorrection> lens = render::parse_lens(settings.lens);
+  if (!lens) throw ProgramError(ExitCode::kUsage, lens.error().message());
+  return *lens;
+}
+
 }  // namespace atlaswire::lab

@@ -6,6 +6,7 @@
 #include "proto/stream_description.h"
 #include "render/camera.h"
 #include "render/gpu/open_device.h"
+#include "render/image/lens_correction.h"
 #include "render/image/picture.h"
 #include "render/scene/scene.h"
 #include "server/encoded_frame.h"
@@ -33,7 +34,8 @@ class Contender {
   virtual void on_update(const client::UpdateArrival& update) = 0;
   /// Puts the newest whole frame on display; nullopt when there is no newer one than last time.
   virtual std::optional<FrameId> show_newest() = 0;
-  /// The frame on display, redrawn for `eye`; alpha 0 where nothing was drawn. Valid until the next call.
+  /// The frame on display, redrawn for `eye` and corrected for its lens; alpha 0 where nothing was drawn.
+  /// Valid until the next call.
   /// Only after a first show_newest() gave a frame.
   virtual const render::Picture& draw(const render::Camera& eye) = 0;
   /// A picture did not decode since the last call: the server must be asked for an I-frame.
@@ -47,5 +49,7 @@ std::unique_ptr<Contender> make_contender(const PointSettings& settings, render:
 
 /// The display's camera at the identity pose: one eye's.
 render::Camera display_camera(const PointSettings& settings);
+/// What pictures of the display are corrected for. Throws ProgramError for a text that is no lens.
+render::LensCorrection display_lens(const PointSettings& settings);
 
 }  // namespace atlaswire::lab

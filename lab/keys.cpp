@@ -1,6 +1,7 @@
 #include "lab/keys.h"
 
 #include "lab/lab_error.h"
+#include "render/image/lens_correction.h"
 
 #include <fmt/format.h>
 
@@ -26,6 +27,9 @@ constexpr std::array kKeys{
     Key{"horizontal_fov", &S::horizontal_fov, 1, 170, "", "horizontal field of view, degrees"},
     Key{"stereo", &S::stereo, 0, 0, "", "two eyes: every method's bytes then carry both"},
     Key{"ipd", &S::ipd, 0, 1, "", "distance between the eyes, m"},
+    Key{"lens", &S::lens, 0, 0, "",
+        "of a headset, that view and truth are corrected for: none, generic, or in a file K1,K2 (of each "
+        "channel)"},
     Key{"method", &S::method, 0, 0, "sas atw mesh iterative", "how the client makes its frames"},
     Key{"depth", &S::depth, 0, 0, "free coded", "depth of mesh and iterative: exact without bytes, or coded"},
     Key{"predict", &S::predict, 0, 0, "", "warps render for the pose expected at display time"},
@@ -200,6 +204,9 @@ Result<void> check_together(const PointSettings& s) {
     return refuse(fmt::format("grid_bits = {}: must be 0 or 8..20", s.grid_bits));
   if (!s.profile.empty() && s.latency_ms != 0)
     return refuse(fmt::format("latency_ms = {}: must be 0 with profile = {}", s.latency_ms, s.profile));
+  if (const auto lens = render::parse_lens(s.lens); lens.has_error())
+    return refuse(
+        fmt::format("lens = {}: {}", s.lens.substr(0, 80), render::error_text(render::LensError::kBadLens)));
   if (s.scene.empty() || s.path.empty()) return refuse("scene and path must not be empty");
   return {};
 }

@@ -29,6 +29,9 @@ constexpr std::string_view kHonoured[]{"scene",
                                        "seconds",
                                        "display",
                                        "horizontal_fov",
+                                       "stereo",
+                                       "ipd",
+                                       "lens",
                                        "method",
                                        "atlas",
                                        "views",
@@ -146,6 +149,8 @@ Result<LiveCommands> live_commands(const PointSettings& s, const fs::path& bin, 
                      extent_text(s.display),
                      "--fov",
                      fmt::format("{:.6f}", vertical_fov_degrees(s)),
+                     "--lens",
+                     s.lens,
                      "--rate",
                      fmt::format("{}", s.client_hz),
                      "--duration",
@@ -157,6 +162,8 @@ Result<LiveCommands> live_commands(const PointSettings& s, const fs::path& bin, 
                      "--out",
                      out.string(),
                      "--quiet"};
+  if (s.stereo)
+    commands.client.insert(commands.client.end(), {"--stereo", "--ipd", fmt::format("{}", s.ipd)});
   return commands;
 }
 

@@ -18,6 +18,7 @@ struct PointSettings {
   double horizontal_fov = 90;    ///< degrees ([SAS] 5), 1..170
   bool stereo = false;           ///< two eyes; every method's bytes then carry both ([SAS] 5.8)
   double ipd = 0.064;            ///< metres between the eyes
+  std::string lens = "none";     ///< that view and truth are corrected for ([SAS] 3.6): render::parse_lens()
   // The method, and what it trades.
   std::string method = "sas";               ///< "sas", "atw", "mesh" or "iterative"
   std::string depth = "free";               ///< of mesh and iterative: "free" (exact, no bytes) or "coded"

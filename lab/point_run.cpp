@@ -44,7 +44,7 @@ class PointRun {
         contender_(make_contender(settings, *device_, scene_)),
         source_(settings, *contender_, motion_),
         carrier_(make_carrier()),
-        truth_(*device_, scene_, settings.scene, outputs.truth_cache),
+        truth_(*device_, scene_, settings.scene, outputs.truth_cache, display_lens(settings)),
         meter_(settings.measure_flip, outputs.pictures) {}
 
   PointResult run() {

@@ -44,7 +44,7 @@ class SasContender final : public Contender {
             description_, {.coding = video_coding(point), .clock = steady_now},
             {.decode_failed = [this] { refresh_ = true; },
              .peer_broke = [](const std::string& why) { throw std::logic_error("stream broke: " + why); }}),
-        renderer_(device, description_, display_camera(point)) {}
+        renderer_(device, description_, display_camera(point), {.lens = display_lens(point)}) {}
 
   server::FrameMaker& maker() override { return stream_; }
   [[nodiscard]] const proto::StreamDescription& description() const override { return description_; }

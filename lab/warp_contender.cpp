@@ -4,6 +4,7 @@
 #include "lab/coding.h"
 #include "lab/view_header.h"
 #include "lab/view_stream.h"
+#include "render/display/lens_pass.h"
 #include "render/passes/tonemap.h"
 #include "render/video/depth_plane.h"
 
@@ -52,8 +53,12 @@ class WarpContender final : public Contender {
         description_(describe(*scene, stream_.picture_extent(), point.server_hz)),
         decoder_(description_.picture, 1, video_coding(point)),
         pairing_(kMaxWaiting, kMaxWaiting),
-        warp_(render::make_view_warp(kind, device,
-                                     render::display_color(scene->background, scene->exposure))) {}
+        warp_(
+            render::make_view_warp(kind, device, render::display_color(scene->background, scene->exposure))) {
+    if (const render::LensCorrection lens = display_lens(point); lens != render::LensCorrection{}) {
+      lens_.emplace(device, lens, 1);
+    }
+  }
 
   server::FrameMaker& maker() override { return stream_; }
   [[nodiscard]] const proto::StreamDescription& description() const override { return description_; }
@@ -91,7 +96,9 @@ class WarpContender final : public Contender {
   }
   const render::Picture& draw(const render::Camera& eye) override {
     warp_->draw(eye);
-    return warp_->read_back();
+    if (!lens_) return warp_->read_back();
+    lens_->apply(*warp_->target(), render::Eye::kLeft);
+    return lens_->read_back();
   }
   bool take_refresh() override { return std::exchange(refresh_, false); }
 
@@ -111,6 +118,7 @@ class WarpContender final : public Contender {
   codec::VideoDecoder decoder_;
   Pairs pairing_;
   std::unique_ptr<render::ViewWarp> warp_;
+  std::optional<render::LensPass> lens_;  ///< nullopt: the display has none
   std::optional<Pairs::Step> newest_;
   bool needs_idr_ = false;
   bool refresh_ = false;

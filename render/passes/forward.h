@@ -21,6 +21,8 @@ class ForwardPass {
   /// Fragments of the last render() that passed the depth test when they were drawn, from near to far: what
   /// forward shading costs. Devices without precise occlusion queries may say less.
   [[nodiscard]] std::uint64_t fragments() const { return fragments_; }
+  /// What render() drew into; null before the first, and another one whenever a camera has another extent.
+  [[nodiscard]] OffscreenTarget* target() { return target_.get(); }
   /// Records the same drawing into a target of the camera's extent, and no read-back.
   void record(const vk::raii::CommandBuffer& commands, const Camera& camera, OffscreenTarget& target,
               OffscreenTarget::Depth depth_after = OffscreenTarget::Depth::kDropped) const;

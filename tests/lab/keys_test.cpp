@@ -41,7 +41,7 @@ TEST(Keys, EveryMemberOfTheSettingsHasAKey) {
     }
     EXPECT_NE(value_text(key, s), before) << key.name;
   }
-  EXPECT_EQ(keys().size(), 33U);  // members of PointSettings
+  EXPECT_EQ(keys().size(), 34U);  // members of PointSettings
 }
 
 TEST(Keys, RealNumbersSurviveExactly) {
@@ -100,6 +100,12 @@ TEST(Keys, ChecksSettingsTogether) {
   EXPECT_TRUE(check_together(s).has_value());
   s.latency_ms = 10;
   EXPECT_TRUE(check_together(s).has_error());
+  s = {};
+  s.lens = "0.1,0.2";
+  EXPECT_TRUE(check_together(s).has_value());
+  s.lens = "fish";
+  ASSERT_TRUE(check_together(s).has_error());
+  EXPECT_NE(check_together(s).error().message().find("lens = fish"), std::string::npos);
 }
 
 }  // namespace

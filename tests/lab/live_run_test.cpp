@@ -10,6 +10,7 @@ namespace {
 
 using testing::Contains;
 using testing::IsSupersetOf;
+using testing::Not;
 
 TEST(LiveRun, SettingsBecomeOptions) {
   PointSettings s;
@@ -22,6 +23,12 @@ TEST(LiveRun, SettingsBecomeOptions) {
   EXPECT_THAT(c->daemon, IsSupersetOf({"/bin/atlasd", "--bitrate", "10000000", "--atlas", "2048x2048"}));
   EXPECT_THAT(c->relay, IsSupersetOf({"/bin/atlas-netsim", "--profile", "wifi6"}));
   EXPECT_THAT(c->client, IsSupersetOf({"/bin/atlas-client", "--size", "200x100", "--fov", "53.130102"}));
+  EXPECT_THAT(c->client, Not(Contains("--stereo")));
+  s.stereo = true;
+  s.ipd = 0.07;
+  s.lens = "generic";
+  EXPECT_THAT(live_commands(s, "/bin", "/out")->client,
+              IsSupersetOf({"--stereo", "--ipd", "0.07", "--lens", "generic"}));
   s.profile.clear();
   EXPECT_TRUE(live_commands(s, "/bin", "/out")->relay.empty());
 }
@@ -34,7 +41,7 @@ TEST(LiveRun, RefusesWhatItCannotHonour) {
   s.method = "atw";
   EXPECT_TRUE(live_commands(s, "/bin", "/out").has_error());
   s = {};
-  s.stereo = true;
+  s.foresight = true;
   EXPECT_TRUE(live_commands(s, "/bin", "/out").has_error());
 }
 

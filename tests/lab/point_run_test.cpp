@@ -1,6 +1,10 @@
 #include "lab/point_run.h"
 
 #include "base/program.h"
+#include "lab/contender.h"
+#include "lab/truth.h"
+#include "render/scene/camera_path.h"
+#include "render/scene/load.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -94,6 +98,34 @@ TEST(PointRun, WithoutLatencyAndCodingAWarpIsTheTruthButForItsChroma) {
     EXPECT_EQ(figure(result, "holes"), 0) << method;
     EXPECT_TRUE(std::isnan(figure(result, "video_mbps"))) << "bare planes are no bit rate";
   }
+}
+
+TEST(PointRun, ALensBendsTheTruthAndEveryMethodAlike) {
+  for (const char* method : {"sas", "atw", "mesh", "iterative"}) {
+    PointSettings s = small(method);
+    s.server_hz = s.client_hz;
+    const double straight = figure(run_point(s, {}), "mssim");
+    s.lens = "0.1,0,0.2,0,0.3,0";
+    EXPECT_GT(figure(run_point(s, {}), "mssim"), straight - 0.005) << method;
+  }
+}
+
+TEST(PointRun, ALensLeavesTheTruthsCornersBlack) {
+  const Folder folder("atlaswire_lens_truth");
+  const auto device = render::open_device({});
+  const auto scene = std::make_shared<const render::Scene>(render::load_scene("atrium:0.05").value());
+  PointSettings s = small("sas");
+  render::Camera camera = display_camera(s);
+  camera.pose = render::CameraPath::load("atrium").value().at(Duration{});
+  const TruePicture straight = Truth(*device, scene, s.scene, folder.path()).picture(camera);
+  s.lens = "generic";
+  const TruePicture bent = Truth(*device, scene, s.scene, folder.path(), display_lens(s)).picture(camera);
+  EXPECT_NE(straight.picture.at(0, 0)[3], 0);
+  EXPECT_EQ(bent.picture.at(0, 0)[3], 0);
+  EXPECT_EQ(bent.deferred_fragments, straight.deferred_fragments) << "shaded before the lens";
+  const TruePicture kept = Truth(*device, scene, s.scene, folder.path(), display_lens(s)).picture(camera);
+  EXPECT_EQ(kept.picture, bent.picture);
+  EXPECT_EQ(kept.deferred_fragments, bent.deferred_fragments);
 }
 
 TEST(PointRun, KnowingTheFutureClosesHoles) {
