@@ -19,21 +19,26 @@ struct Group {
   std::map<std::string, Curve> curves;
 };
 
-/// Keys that tell groups apart: varying ones that neither a variant sets nor the sweep's `x` is. Where x is a
-/// figure, the axis behind it is every swept key.
-std::vector<std::string> group_keys(const Experiment& e, const Plan& plan, const std::string& x) {
-  std::set<std::string> others{x};
+/// Varying keys that neither a variant sets nor `others` holds.
+std::vector<std::string> shared_keys(const Experiment& e, const Plan& plan, std::set<std::string> others) {
   for (const Variant& v : e.variants) {
     for (const Assignment& a : v.settings) others.insert(a.first);
-  }
-  if (!find_key(x)) {
-    for (const Axis& axis : e.sweep) others.insert(axis.key);
   }
   std::vector<std::string> keys;
   for (const std::string& key : plan.varying) {
     if (!others.contains(key)) keys.push_back(key);
   }
   return keys;
+}
+
+/// Keys that tell groups of curves over `x` apart. Where x is a figure, the axis behind it is every swept
+/// key.
+std::vector<std::string> group_keys(const Experiment& e, const Plan& plan, const std::string& x) {
+  std::set<std::string> others{x};
+  if (!find_key(x)) {
+    for (const Axis& axis : e.sweep) others.insert(axis.key);
+  }
+  return shared_keys(e, plan, std::move(others));
 }
 
 std::vector<Group> groups_of(const Experiment& e, const Plan& plan, const std::vector<Row>& rows,
@@ -122,6 +127,38 @@ std::vector<RateDifference> rate_differences(const Experiment& e, const Plan& pl
   return differences;
 }
 
+/// Differences in one y among the rows of a group, the reference's first.
+void add_differences(const DifferenceRule& rule, const std::string& y, const std::vector<const Row*>& group,
+                     const std::string& name, std::vector<Difference>& out) {
+  const auto reference =
+      std::ranges::find_if(group, [&](const Row* r) { return r->point.variant == rule.reference; });
+  if (reference == group.end()) return;
+  const double base = number_of(**reference, y);
+  out.push_back({name, rule.reference, y, base, 0});
+  for (const Row* row : group) {
+    const double value = number_of(*row, y);
+    if (row == *reference || std::isnan(value)) continue;
+    out.push_back({name, row->point.variant, y, value, value - base});
+  }
+}
+
+std::vector<Difference> differences(const Experiment& e, const Plan& plan, const std::vector<Row>& rows) {
+  std::vector<Difference> found;
+  if (e.difference.reference.empty()) return found;
+  const std::vector<std::string> keys = shared_keys(e, plan, {});
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<const Row*>> groups;
+  for (const Row& row : rows) {
+    const std::string name = settings_text(row.point.settings, keys);
+    if (!groups.contains(name)) names.push_back(name);
+    groups[name].push_back(&row);
+  }
+  for (const std::string& name : names) {
+    for (const std::string& y : e.difference.y) add_differences(e.difference, y, groups[name], name, found);
+  }
+  return found;
+}
+
 /// At least as good in everything, and better in something.
 bool dominates(const Row& a, const Row& b, const ParetoRule& rule) {
   bool better = false;
@@ -176,6 +213,7 @@ Analysis analyse(const Experiment& experiment, const Plan& plan, const std::vect
   Analysis a;
   a.crossovers = crossovers(experiment, plan, rows);
   a.rates = rate_differences(experiment, plan, rows);
+  a.differences = differences(experiment, plan, rows);
   a.front = pareto_front(experiment.pareto, rows);
   for (const Recommendation& wish : experiment.recommendations) a.advice.push_back(advise(wish, plan, rows));
   return a;

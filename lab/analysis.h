@@ -31,6 +31,15 @@ struct RateDifference {
   std::string why;          ///< empty, or why there is no figure
 };
 
+/// One variant beside the reference at one scene and set of settings.
+struct Difference {
+  std::string group;    ///< scene and other settings that both share; empty: none vary
+  std::string variant;  ///< the reference itself comes first
+  std::string y;
+  double value = 0;  ///< the variant's
+  double more = 0;   ///< than the reference has; 0 of itself, NaN where the reference has no number
+};
+
 /// A recommended point.
 struct Advice {
   std::string client;
@@ -42,6 +51,7 @@ struct Advice {
 struct Analysis {
   std::vector<Crossover> crossovers;
   std::vector<RateDifference> rates;
+  std::vector<Difference> differences;
   std::vector<std::string> front;  ///< ids of Pareto-optimal points, in the plan's order
   std::vector<Advice> advice;
 };

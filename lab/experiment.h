@@ -57,6 +57,12 @@ struct RateRule {
   std::string reference;  ///< a variant; empty: this analysis is not wanted
 };
 
+/// What each variant has more or less of than `reference`, all else equal.
+struct DifferenceRule {
+  std::vector<std::string> y;
+  std::string reference;  ///< a variant; empty: this analysis is not wanted
+};
+
 /// Points that no other point beats in everything named; both empty: this analysis is not wanted.
 struct ParetoRule {
   std::vector<std::string> most;   ///< more of it is better
@@ -95,6 +101,7 @@ struct Experiment {
   std::vector<Plot> plots;
   CrossoverRule crossover;
   RateRule rate;
+  DifferenceRule difference;
   ParetoRule pareto;
   std::vector<Recommendation> recommendations;
 };

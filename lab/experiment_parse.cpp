@@ -208,6 +208,15 @@ std::optional<Error> read_rate(const toml::table& table, const std::string& wher
   return r.finish_all();
 }
 
+std::optional<Error> read_difference(const toml::table& table, const std::string& where,
+                                     DifferenceRule& out) {
+  Reader r(table, where);
+  r.words("y", out.y);
+  if (out.y.empty()) r.fail(LabError::kOutOfRange, "y is missing");
+  r.required_word("reference", out.reference);
+  return r.finish_all();
+}
+
 std::optional<Error> read_pareto(const toml::table& table, const std::string& where, ParetoRule& out) {
   Reader r(table, where);
   r.words("most", out.most);
@@ -245,6 +254,7 @@ std::optional<Error> check_names(const Experiment& e, const std::string& origin)
   };
   if (auto error = demand("crossover.reference", e.crossover.reference)) return error;
   if (auto error = demand("rate.reference", e.rate.reference)) return error;
+  if (auto error = demand("difference.reference", e.difference.reference)) return error;
   for (const std::string& name : e.quick.variants) {
     if (auto error = demand("quick.variants", name)) return error;
   }
@@ -279,6 +289,7 @@ Result<Experiment> parse_experiment(std::string_view toml, const std::string& or
   r.each_table("plot", [&](const auto& t, const auto& where) { return read_plot(t, where, e); });
   if (const auto* t = r.table("crossover")) r.take(read_crossover(*t, r.at("crossover"), e.crossover));
   if (const auto* t = r.table("rate")) r.take(read_rate(*t, r.at("rate"), e.rate));
+  if (const auto* t = r.table("difference")) r.take(read_difference(*t, r.at("difference"), e.difference));
   if (const auto* t = r.table("pareto")) r.take(read_pareto(*t, r.at("pareto"), e.pareto));
   r.each_table("recommend",
                [&](const auto& t, const auto& where) { return read_recommendation(t, where, e); });

@@ -109,11 +109,20 @@ Json analysis_json(const Analysis& a) {
                      {"quality", number(d.quality)},
                      {"why", d.why}});
   }
+  Json differences = Json::array();
+  for (const Difference& d : a.differences) {
+    differences.push_back({{"group", d.group},
+                           {"variant", d.variant},
+                           {"y", d.y},
+                           {"value", number(d.value)},
+                           {"more", number(d.more)}});
+  }
   Json advice = Json::array();
   for (const Advice& one : a.advice)
     advice.push_back({{"client", one.client}, {"id", one.id}, {"label", one.label}});
   return {{"crossovers", std::move(crossovers)},
           {"rates", std::move(rates)},
+          {"differences", std::move(differences)},
           {"front", a.front},
           {"advice", std::move(advice)}};
 }
@@ -127,6 +136,7 @@ Json rules_json(const Experiment& e) {
   }
   return {{"crossover", {{"x", e.crossover.x}, {"y", e.crossover.y}, {"reference", e.crossover.reference}}},
           {"rate", {{"rate", e.rate.rate}, {"quality", e.rate.quality}, {"reference", e.rate.reference}}},
+          {"difference", {{"y", e.difference.y}, {"reference", e.difference.reference}}},
           {"pareto", {{"most", e.pareto.most}, {"least", e.pareto.least}}},
           {"recommend", std::move(recommendations)}};
 }

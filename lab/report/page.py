@@ -87,6 +87,23 @@ def rates(results):
             "same rate.</p>" + table(["variant", "", "rate", rule["quality"], ""], rows))
 
 
+def differences(results):
+    """A row a variant, two columns a y: its value, and how much more that is than the reference's."""
+    found = results["analysis"]["differences"]
+    if not found:
+        return ""
+    rule = results["rules"]["difference"]
+    rows = {}
+    for one in found:
+        cells = rows.setdefault((one["group"], one["variant"]), dict.fromkeys(rule["y"], ("", "")))
+        more = "" if one["more"] is None or one["variant"] == rule["reference"] else f"{one['more']:+.4f}"
+        cells[one["y"]] = (number(one["value"]), more)
+    shown = [[group, variant] + [text for pair in cells.values() for text in pair] for (group, variant), cells in rows.items()]
+    best = {i for i, (_, variant) in enumerate(rows) if variant == rule["reference"]}
+    return (f"<h2>Beside {escape(rule['reference'])}</h2><p class=note>All else equal; differences are signed.</p>"
+            + table(["", "variant"] + [t for y in rule["y"] for t in (y, "difference")], shown, best))
+
+
 def advice(results):
     found = results["analysis"]["advice"]
     if not found:
@@ -146,7 +163,7 @@ def page(results, drawn, folder):
         head.append(f"<p class=warn>{len(results['points'])} of {results['planned']} points are finished.</p>")
     if len(results["provenance"].get("commit", [])) > 1:
         head.append("<p class=warn>These points were made by different commits.</p>")
-    parts = [*head, plot_section(drawn), crossovers(results), rates(results), advice(results)]
+    parts = [*head, plot_section(drawn), crossovers(results), rates(results), differences(results), advice(results)]
     figures = figure_table(results, "figures")
     if figures:
         parts.append("<h2>Figures</h2>" + figures)

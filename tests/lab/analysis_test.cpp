@@ -90,6 +90,23 @@ TEST(Analysis, RatesSayWhyThereIsNoFigure) {
   EXPECT_FALSE(a.rates[0].why.empty());
 }
 
+TEST(Analysis, DifferencesStandBesideTheReferenceOfTheirGroup) {
+  Rows rows;
+  rows.add("ATW", 0, 10, 0.96);
+  rows.add("ours", 0, 10, 0.90);
+  rows.add("ours", 50, 10, 0.89);
+  rows.add("ATW", 50, 10, 0.70);
+  rows.add("ATW", 90, 10, 0.60);  // without a reference
+  const Analysis a = rows.analyse("[difference]\ny = [\"mssim\"]\nreference = \"ours\"\n");
+  ASSERT_EQ(a.differences.size(), 4U);
+  EXPECT_EQ(a.differences[0].variant, "ours");
+  EXPECT_EQ(a.differences[0].group, "latency_ms 0");
+  EXPECT_EQ(a.differences[0].more, 0);
+  EXPECT_NEAR(a.differences[1].more, 0.06, 1e-12);
+  EXPECT_EQ(a.differences[3].group, "latency_ms 50");
+  EXPECT_NEAR(a.differences[3].more, -0.19, 1e-12);
+}
+
 constexpr const char* kPareto = R"([pareto]
 most = "mssim"
 least = ["total_mbps", "server_frame_ms"]
