@@ -112,7 +112,7 @@ TEST(Experiment, RefusesInOneLine) {
 TEST(Experiment, EveryShippedOneParsesAndPlansWholeAndQuick) {
   const std::vector<std::string> names = shipped_experiments();
   EXPECT_EQ(names, (std::vector<std::string>{"amortization", "bitrate", "causes", "endtoend", "latency",
-                                             "network", "tradeoff", "upsampling"}));
+                                             "latency-bitrate", "network", "tradeoff", "upsampling"}));
   for (const std::string& name : names) {
     const auto e = parse_experiment(shipped_experiment_text(name), name);
     ASSERT_TRUE(e.has_value()) << e.error().message();

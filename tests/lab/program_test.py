@@ -34,6 +34,9 @@ y = ["mssim"]
 x = "latency_ms"
 y = "mssim"
 reference = "ours"
+[difference]
+y = "mssim"
+reference = "ours"
 """
 
 
@@ -171,6 +174,7 @@ class Program(unittest.TestCase):
         self.assertIn("A small one", text)
         self.assertIn("data:image/png;base64,", text)
         self.assertIn("from 50 on ours is better", text)
+        self.assertIn("<td>latency_ms 50</td><td>ATW</td><td>0.935</td><td>+0.0000</td>", text)
         self.assertNotRegex(text, r"(src|href)=.?(http|plots/|points/)")
         self.assertEqual(len(list(self.out.glob("plots/*.svg"))), 1)
 
@@ -194,7 +198,8 @@ class Program(unittest.TestCase):
 
     def test_list_show_and_keys(self):
         listed = lab("list").stdout
-        for name in ("latency", "upsampling", "bitrate", "amortization", "endtoend", "network", "tradeoff"):
+        for name in ("latency", "upsampling", "bitrate", "amortization", "causes", "endtoend", "latency-bitrate", "network",
+                     "tradeoff"):
             self.assertIn(f"\n{name} ", "\n" + listed)
         self.assertIn("[SAS] fig. 13", lab("show", "latency").stdout)
         self.assertIn("latency_ms", lab("keys").stdout)
