@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "render/scene/gltf_accessor.h"
 #include "render/scene/gltf_looks.h"
+#include "render/scene/gltf_rig.h"
 #include "render/scene/light_lists.h"
 #include "render/scene/scene_error.h"
 #include "render/scene/tinygltf_include.h"
@@ -55,6 +56,9 @@ class Reader {
       if (auto error = visit(root, glm::dmat4(1.0), 0)) return *error;
     }
     if (out_.instances.empty()) return Error{SceneError::kEmpty, "no mesh in the scene's nodes"};
+    if (moves()) {
+      if (auto rig = read_rig(model_, out_.instances, out_.rig); rig.has_error()) return rig.error();
+    }
     if (ignored_suns_ > 0)
       spdlog::warn("{} further directional lights are left out: one can cast shadows", ignored_suns_);
     return {};
@@ -94,7 +98,8 @@ class Reader {
     const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
     const glm::dmat4 to_scene = parent * local_transform(node);
     if (node.mesh >= 0) {
-      if (auto error = place_mesh(node.mesh, to_scene)) return error;
+      if (auto error = place_mesh(node.mesh, to_scene, {static_cast<std::uint32_t>(index), node.skin}))
+        return error;
     }
     const glm::dvec3 place(to_scene[3]);
     if (!std::isfinite(place.x + place.y + place.z)) {
@@ -154,7 +159,7 @@ class Reader {
     if (glm::dot(color, color) > glm::dot(out_.sun.color, out_.sun.color)) out_.sun = {forward, color};
   }
 
-  std::optional<Error> place_mesh(int index, const glm::dmat4& to_scene) {
+  std::optional<Error> place_mesh(int index, const glm::dmat4& to_scene, const RigInstance& by) {
     if (static_cast<std::size_t>(index) >= model_.meshes.size())
       return Error{SceneError::kIndexOutOfRange, "mesh " + std::to_string(index)};
     auto& made = meshes_[static_cast<std::size_t>(index)];
@@ -164,11 +169,21 @@ class Reader {
         if (mesh.has_error())
           return Error{mesh.error().code, "mesh " + std::to_string(index) + ": " + mesh.error().detail};
         if (mesh->indices.empty()) continue;
+        if (moves()) {
+          auto rig = read_rig_mesh(model_, primitive, mesh->vertices.size());
+          if (rig.has_error())
+            return Error{rig.error().code, "mesh " + std::to_string(index) + ": " + rig.error().detail};
+          out_.rig.meshes.push_back(std::move(*rig));
+        }
+        finish(primitive, *mesh);
         made.push_back(static_cast<std::uint32_t>(out_.meshes.size()));
         out_.meshes.push_back(std::move(*mesh));
       }
     }
-    for (const std::uint32_t mesh : made) out_.instances.push_back({mesh, to_scene});
+    for (const std::uint32_t mesh : made) {
+      out_.instances.push_back({mesh, to_scene});
+      if (moves()) out_.rig.instances.push_back(by);
+    }
     return std::nullopt;
   }
 
@@ -205,17 +220,27 @@ class Reader {
                                       [](SourceVertex& v, const float* f) { v.uv = glm::make_vec2(f); }))
         return *error;
     }
-    if (!normals) compute_normals(mesh, true);
-    const bool mapped = out_.materials[mesh.material].normal_texture != kNoTexture;
-    if (mapped && attribute("TANGENT") >= 0 && normals) {
+    if (attribute("TANGENT") >= 0 && normals && is_normal_mapped(mesh)) {
       if (auto error = read_attribute(attribute("TANGENT"), 4, mesh,
                                       [](SourceVertex& v, const float* f) { v.tangent = glm::make_vec4(f); }))
         return *error;
-    } else if (mapped) {
-      compute_tangents(mesh);
     }
     return mesh;
   }
+
+  [[nodiscard]] bool is_normal_mapped(const SourceMesh& mesh) const {
+    return out_.materials[mesh.material].normal_texture != kNoTexture;
+  }
+
+  /// Computes what the file leaves out. May split vertices, which then remember what moves them.
+  void finish(const tinygltf::Primitive& in, SourceMesh& mesh) const {
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i].rig = i;
+    const bool normals = in.attributes.contains("NORMAL");
+    if (!normals) compute_normals(mesh, true);
+    if (is_normal_mapped(mesh) && !(normals && in.attributes.contains("TANGENT"))) compute_tangents(mesh);
+  }
+
+  [[nodiscard]] bool moves() const { return !model_.animations.empty(); }
 
   std::optional<Error> read_triangles(const tinygltf::Primitive& in, SourceMesh& mesh) {
     if (in.indices >= 0) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/scene/rig.h"
 #include "render/scene/scene.h"
 
 #include <cstdint>
@@ -15,6 +16,7 @@ struct SourceVertex {
   glm::vec3 normal{0.0F};
   glm::vec4 tangent{0.0F};  ///< xyz along +u; w = +-1 so that bitangent = cross(normal, tangent) * w
   glm::vec2 uv{0.0F};
+  std::uint32_t rig = 0;  ///< which of RigMesh's entries moves it
 };
 
 /// Triangles of one material before they are placed. Indices must be below vertices.size(): who makes one
@@ -51,6 +53,7 @@ struct SceneSource {
   glm::vec3 background{0.0F};
   float exposure = 1.0F;
   Pose start;
+  Rig rig;
 };
 
 /// Normals where every one of the mesh's is zero: of faces when `flat` (vertices are split), else smoothed
