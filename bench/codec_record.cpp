@@ -26,7 +26,19 @@ struct Options {
   std::uint32_t height = 270;
   std::uint32_t atlas = 1024;
   std::uint32_t grid_bits = 0;
+  double turn_at = -1;
 };
+
+constexpr double kTurnRate = 1.5707963267948966;  // radians a second
+
+/// Where the viewer is: on the path, or standing on it and turning about the vertical.
+Pose pose_at(const render::CameraPath& path, const Options& options, Duration now) {
+  if (options.turn_at < 0) return path.at(now);
+  Pose pose = path.at(from_seconds(options.turn_at));
+  pose.orientation =
+      glm::angleAxis(kTurnRate * to_seconds(now), glm::dvec3(0, 1, 0)) * glm::dquat(pose.orientation);
+  return pose;
+}
 
 void record(const Options& options) {
   auto scene = std::make_shared<const render::Scene>(render::load_scene(options.scene).value());
@@ -47,8 +59,8 @@ void record(const Options& options) {
   const Duration step = from_seconds(1 / options.rate);
   for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
     const Duration now = frame * step;
-    request.camera.pose = path.at(now);
-    set_velocities_from(path.at(now - step), request.camera.pose, step);
+    request.camera.pose = pose_at(path, options, now);
+    set_velocities_from(pose_at(path, options, now - step), request.camera.pose, step);
     request.restart = frame == 0;
     server::PreparedFrame prepared = stream.render(request);
     recording.updates.push_back(prepared.update);
@@ -70,6 +82,8 @@ int main(int argc, char** argv) {
   app.add_option("--width", options.width, "Display pixels");
   app.add_option("--height", options.height, "Display pixels");
   app.add_option("--atlas", options.atlas, "Texels a side");
+  app.add_option("--turn-at", options.turn_at,
+                 "Stand where the path is at this second, and turn by 90 degrees a second");
   app.add_option("--grid-bits", options.grid_bits, "0: suited to the scene");
   CLI11_PARSE(app, argc, argv);
   try {

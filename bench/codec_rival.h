@@ -1,0 +1,49 @@
+#pragma once
+
+#include "bench/increment.h"
+#include "codec/meta_update.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace atlaswire::bench {
+
+/// Octets of one update: additions and removals, and apart from them what says where and how patches are
+/// shaded and drawn (blocks, drawing classes).
+struct UpdateCost {
+  std::size_t mesh = 0;
+  std::size_t blocks = 0;
+};
+
+/// One codec in the comparison: both ends of one stream.
+class CodecRival {
+ public:
+  virtual ~CodecRival() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// The next update, kept for `decode`.
+  virtual void encode(const Increment& increment) = 0;
+  /// Of the last update.
+  [[nodiscard]] virtual UpdateCost cost() const = 0;
+  /// Decodes the last update. Throws std::runtime_error where that fails.
+  virtual void decode() = 0;
+};
+
+/// Structs as a program holds them: a vertex is an id and three floats, a corner and a patch an id of 32
+/// bits.
+std::unique_ptr<CodecRival> make_naive_rival();
+/// Draco at its smallest (edgebreaker, speed 0, whole numbers), each increment a mesh; removals, blocks and
+/// classes as columns through zstd-19 with history. How the faces of its reordered mesh form patches is not
+/// counted: a bound from below.
+std::unique_ptr<CodecRival> make_draco_rival();
+/// meshoptimizer's vertex and index codecs, each increment a mesh, and the columns, through zstd-19 with
+/// history; the grouping of faces not counted either.
+std::unique_ptr<CodecRival> make_meshopt_rival();
+/// One of the stream's own forms.
+std::unique_ptr<CodecRival> make_own_rival(codec::MetaCodecKind kind, const codec::MetaLimits& limits);
+
+/// Octets of a mesh at Draco's smallest.
+std::size_t draco_size(const std::vector<GridPosition>& positions, const std::vector<std::uint32_t>& indices);
+
+}  // namespace atlaswire::bench
