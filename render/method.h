@@ -34,6 +34,9 @@ struct FrameRequest {
   Camera camera;
   Duration cover{};    ///< predict up to this far ahead
   bool intra = false;  ///< the encoder will make an I-frame of it
+  /// Its layout, and all that follow, are to be a function of requests from this frame on, so that a receiver
+  /// can begin here to derive them; only with `intra`.
+  bool restart = false;
   ViewHints hints;
 };
 
@@ -68,8 +71,9 @@ struct RenderedView {
 struct RenderedFrame {
   FrameId frame{};
   I420Picture picture;
-  const LayoutChange* change = nullptr;  ///< valid until the next render; null: the method has no atlas
-  std::optional<RenderedView> view;      ///< nullopt: the method has an atlas
+  const LayoutChange* change = nullptr;    ///< valid until the next render; null: the method has no atlas
+  std::span<const BlockRequest> requests;  ///< what `change` answers; as long valid; ascending
+  std::optional<RenderedView> view;        ///< nullopt: the method has an atlas
   AtlasUsage usage;
   LayoutCounts layout;
   std::uint32_t visible_patches = 0;
@@ -125,6 +129,9 @@ class Method {
   virtual RenderedFrame render(const FrameRequest& request) = 0;
   /// The atlas's memory wants an early I-frame.
   [[nodiscard]] virtual bool wants_intra() const = 0;
+  /// The memory that a receiver must have to derive each frame's layout from its requests
+  /// (make_sequential_allocator); nullopt: it cannot.
+  [[nodiscard]] virtual std::optional<AllocatorSettings> memory() const = 0;
   /// Every live patch, ascending: what a new client must be told. Empty without an atlas.
   [[nodiscard]] virtual std::vector<PlacedPatch> blocks() const = 0;
 };

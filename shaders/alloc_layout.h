@@ -65,10 +65,14 @@ AW_CONST kMoved = 2u;
 AW_CONST kRemoved = 4u;
 AW_CONST kRefused = 8u;
 
+/// Whether a frame resets.
+AW_CONST kMayReset = 1u;  // if memory asks for it
+AW_CONST kMustReset = 2u;
+
 /// Push constants of every pass. Areas are counted in smallest blocks.
 struct Constants {
   uint patches;
-  uint may_reset;
+  uint reset;  // 0: not in this frame
   uint levels;
   uint min_log2;
   uint max_log2;    // of blocks, and the superblock's side

@@ -52,7 +52,7 @@ void clear() {
 }
 
 void main() {
-  bool reset = set.may_reset != 0u && store.wants_reset != 0u;
+  bool reset = set.reset == kMustReset || (set.reset == kMayReset && store.wants_reset != 0u);
   uint w = gl_LocalInvocationID.x;
   uint tail = w < kMostSides ? store.tail_superblock[w] : kNone;
   bool tail_freed = tail != kNone && superblocks[tail].in_use == 0u;

@@ -31,7 +31,7 @@ void take_part(uint patch_id, uint want, Record record, uint what, bool reset) {
 }
 
 void main() {
-  bool reset = set.may_reset != 0u && store.wants_reset != 0u;
+  bool reset = set.reset == kMustReset || (set.reset == kMayReset && store.wants_reset != 0u);
   uint i = gl_GlobalInvocationID.x;
   if (i < store.deferred && !reset) count_out(deferred_blocks[i].position, 0u);
   if (i < set.patches) {

@@ -77,6 +77,9 @@ class AtlasAllocator {
   /// One frame: `visible` ascends by patch. Patches not in it are released. `may_reset`: this frame is an
   /// I-frame, so blocks may all move if memory asks for it.
   virtual const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) = 0;
+  /// Makes the next update() a reset, whatever memory says: its layout, and all that follow, are then a
+  /// function of the requests from there on, and a new allocator that restarts with them arrives at the same.
+  virtual void restart() = 0;
   /// Every live block, ascending by patch.
   [[nodiscard]] virtual std::vector<PlacedPatch> blocks() const = 0;
   [[nodiscard]] virtual AtlasUsage usage() const = 0;

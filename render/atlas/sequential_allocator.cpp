@@ -3,6 +3,7 @@
 #include "render/atlas/superblock_store.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace atlaswire::render {
 
@@ -27,6 +28,7 @@ class SequentialAllocator final : public AtlasAllocator {
         regrow_limit_(high_water_texels(settings)) {}
 
   const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) override;
+  void restart() override { restarts_ = true; }
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return ledger_.blocks(); }
   [[nodiscard]] AtlasUsage usage() const override { return store_.usage(); }
   [[nodiscard]] bool wants_reset() const override { return wants_reset_; }
@@ -47,10 +49,11 @@ class SequentialAllocator final : public AtlasAllocator {
   std::vector<Block> outgrown_;
   LayoutChange change_;
   bool wants_reset_ = false;
+  bool restarts_ = false;
 };
 
 const LayoutChange& SequentialAllocator::update(std::span<const BlockRequest> visible, bool may_reset) {
-  change_.reset = may_reset && wants_reset_;
+  change_.reset = std::exchange(restarts_, false) || (may_reset && wants_reset_);
   ledger_.advance(visible, change_.reset);
   if (change_.reset) {
     store_.clear();

@@ -5,6 +5,7 @@
 #include "render/atlas/patch_ledger.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace atlaswire::render {
@@ -23,6 +24,7 @@ class DirectAllocator final : public AtlasAllocator {
         resets_(resets) {}
 
   const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) override;
+  void restart() override { restarts_ = true; }
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return ledger_.blocks(); }
   [[nodiscard]] AtlasUsage usage() const override { return memory_->usage(); }
   [[nodiscard]] bool wants_reset() const override { return wants_reset_; }
@@ -39,10 +41,11 @@ class DirectAllocator final : public AtlasAllocator {
   std::vector<std::uint32_t> order_;
   LayoutChange change_;
   bool wants_reset_ = false;
+  bool restarts_ = false;
 };
 
 const LayoutChange& DirectAllocator::update(std::span<const BlockRequest> visible, bool may_reset) {
-  change_.reset = may_reset && wants_reset_;
+  change_.reset = std::exchange(restarts_, false) || (may_reset && wants_reset_);
   ledger_.advance(visible, change_.reset);
   if (change_.reset) {
     memory_->clear();

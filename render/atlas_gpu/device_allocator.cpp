@@ -4,6 +4,7 @@
 #include "render/atlas/atlas_demand.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace atlaswire::render {
 namespace {
@@ -39,11 +40,16 @@ const LayoutChange& DeviceAllocator::update(std::span<const BlockRequest> visibl
   context_.run([&](const vk::raii::CommandBuffer& commands) {
     timer_.reset(commands);
     timer_.begin(commands, "atlas memory");
-    store_.record(commands, may_reset);
+    record(commands, may_reset);
     timer_.end(commands);
   });
   for (const auto& [stage, took] : timer_.collect()) device_time_ += took;
   return collect();
+}
+
+void DeviceAllocator::record(const vk::raii::CommandBuffer& commands, bool may_reset) {
+  const std::uint32_t otherwise = may_reset ? alloc::kMayReset : 0;
+  store_.record(commands, std::exchange(restarts_, false) ? alloc::kMustReset : otherwise);
 }
 
 void DeviceAllocator::upload(std::span<const BlockRequest> visible) {

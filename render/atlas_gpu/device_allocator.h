@@ -26,13 +26,14 @@ class DeviceAllocator final : public AtlasAllocator {
 
   /// What each patch wants, for an earlier pass to write (alloc_layout.h); levels must be legal.
   [[nodiscard]] const Buffer& wants() const { return store_.wants(); }
-  void record(const vk::raii::CommandBuffer& commands, bool may_reset) { store_.record(commands, may_reset); }
+  void record(const vk::raii::CommandBuffer& commands, bool may_reset);
   /// The recorded frame's change, once it was waited for.
   const LayoutChange& collect();
 
   /// What all update() calls took on the device; zero where it has no timestamps.
   [[nodiscard]] Duration device_time() const { return device_time_; }
 
+  void restart() override { restarts_ = true; }
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return live_.blocks(); }
   [[nodiscard]] AtlasUsage usage() const override;
   [[nodiscard]] bool wants_reset() const override { return report_.wants_reset != 0; }
@@ -50,6 +51,7 @@ class DeviceAllocator final : public AtlasAllocator {
   alloc::Report report_;
   LiveBlocks live_;
   LayoutChange change_;
+  bool restarts_ = false;
 };
 
 }  // namespace atlaswire::render

@@ -104,11 +104,12 @@ Buffer DeviceStore::make(Device& device, const char* name, std::size_t bytes, Re
                                              "atlas, larger smallest blocks, or --allocator sequential");
   }
   using Usage = vk::BufferUsageFlagBits;
-  return {device,
-          {.name = std::string("atlas memory: ") + name,
-           .size = bytes,
-           .usage = Usage::eStorageBuffer | Usage::eTransferDst | Usage::eIndirectBuffer,
-           .residence = residence}};
+  return {
+      device,
+      {.name = std::string("atlas memory: ") + name,
+       .size = bytes,
+       .usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst | Usage::eIndirectBuffer,
+       .residence = residence}};
 }
 
 void DeviceStore::upload_initial_state(Device& device, const AllocatorSettings& settings) {
@@ -154,9 +155,9 @@ void DeviceStore::add_pass(Device& device, const char* name, ShaderWords shader,
                      extent});
 }
 
-void DeviceStore::record(const vk::raii::CommandBuffer& commands, bool may_reset) const {
+void DeviceStore::record(const vk::raii::CommandBuffer& commands, std::uint32_t reset) const {
   Constants constants = constants_;
-  constants.may_reset = may_reset ? 1 : 0;
+  constants.reset = reset;
   for (const Pass& pass : passes_) {
     pass.pipeline.bind(commands, {sets_.handle()});
     pass.pipeline.push(commands, constants);

@@ -43,8 +43,8 @@ class DeviceStore {
   /// kUpload) or by an earlier pass before record().
   [[nodiscard]] const Buffer& wants() const { return wants_; }
 
-  /// Records one frame, whose wants are visible to shaders. `may_reset`: as AtlasAllocator::update has it.
-  void record(const vk::raii::CommandBuffer& commands, bool may_reset) const;
+  /// Records one frame, whose wants are visible to shaders. `reset`: 0, kMayReset or kMustReset.
+  void record(const vk::raii::CommandBuffer& commands, std::uint32_t reset) const;
 
   /// What the recorded frame did, once it was waited for.
   [[nodiscard]] alloc::Report report() const;

@@ -20,6 +20,8 @@ class HostPlanner final : public LayoutPlanner {
     stats_ = selector_.select(visibility_->levels(), requests_);
     return allocator_->update(requests_, may_reset);
   }
+  void restart() override { allocator_->restart(); }
+  [[nodiscard]] std::span<const BlockRequest> requests() const override { return requests_; }
   [[nodiscard]] LevelStats levels() const override { return stats_; }
   [[nodiscard]] Duration device_time() const override { return Duration::zero(); }
   [[nodiscard]] const AtlasAllocator& allocator() const override { return *allocator_; }
@@ -38,6 +40,10 @@ class DevicePlanner final : public LayoutPlanner {
                 std::uint32_t patch_count)
       : allocator_(device, settings.allocator, patch_count, SlotOrder::kRanked, Residence::kDevice),
         selector_(device, settings, patch_count, visibility.level_words(), allocator_.wants()),
+        wants_(device, {.name = "wants, read back",
+                        .size = allocator_.wants().size(),
+                        .usage = vk::BufferUsageFlagBits::eTransferDst,
+                        .residence = Residence::kReadback}),
         timer_(device, "layout timer", 1) {}
 
   void record(const vk::raii::CommandBuffer& commands, bool may_reset) override {
@@ -45,21 +51,43 @@ class DevicePlanner final : public LayoutPlanner {
     timer_.reset(commands);
     timer_.begin(commands, "layout");
     selector_.record(commands);
+    shaders_to_transfer(commands);
+    const vk::BufferCopy all{.size = wants_.size()};
+    commands.copyBuffer(allocator_.wants().handle(), wants_.handle(), all);
     allocator_.record(commands, may_reset);
     timer_.end(commands);
   }
   const LayoutChange& finish(bool) override {
     device_time_ = Duration::zero();
     for (const auto& [stage, took] : timer_.collect()) device_time_ += took;
+    read_wants();
     return allocator_.collect();
   }
+  void restart() override { allocator_.restart(); }
+  [[nodiscard]] std::span<const BlockRequest> requests() const override { return requests_; }
   [[nodiscard]] LevelStats levels() const override { return selector_.stats(); }
   [[nodiscard]] Duration device_time() const override { return device_time_; }
   [[nodiscard]] const AtlasAllocator& allocator() const override { return allocator_; }
 
  private:
+  void read_wants() {
+    wants_.invalidate();
+    requests_.clear();
+    const auto words = wants_.mapped<const std::uint32_t>();
+    for (std::uint32_t patch = 0; patch < words.size(); ++patch) {
+      const std::uint32_t want = words[patch];
+      if (want == 0) continue;
+      requests_.push_back({.patch = PatchId{patch},
+                           .width_log2 = static_cast<std::uint8_t>((want & alloc::kSidesMask) >> 4),
+                           .height_log2 = static_cast<std::uint8_t>(want & 15),
+                           .transposed = (want & alloc::kTransposed) != 0});
+    }
+  }
+
   DeviceAllocator allocator_;
   DeviceSelector selector_;
+  Buffer wants_;  ///< the frame's, for the host
+  std::vector<BlockRequest> requests_;
   GpuTimer timer_;
   Duration device_time_{};
 };

@@ -7,6 +7,7 @@
 #include "render/passes/visibility.h"
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace atlaswire::render {
@@ -20,6 +21,10 @@ class LayoutPlanner {
   virtual void record(const vk::raii::CommandBuffer& commands, bool may_reset) = 0;
   /// The frame's change, once that submission was waited for; valid until the next.
   virtual const LayoutChange& finish(bool may_reset) = 0;
+  /// The next frame's layout follows from its requests alone (AtlasAllocator::restart). Before record().
+  virtual void restart() = 0;
+  /// What the frame's patches asked for, ascending; valid until the next.
+  [[nodiscard]] virtual std::span<const BlockRequest> requests() const = 0;
   /// What level selection did in the frame.
   [[nodiscard]] virtual LevelStats levels() const = 0;
   /// How long record()'s work took on the device.

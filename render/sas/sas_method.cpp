@@ -92,6 +92,7 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
 RenderedFrame SasMethod::render(const FrameRequest& request) {
   RenderedFrame frame{.frame = request.frame};
   const Time start = steady_now();
+  if (request.restart) planner_->restart();
   find_visible(request);
   const Time found = steady_now();
   const LayoutChange& change = planner_->finish(request.intra);
@@ -105,6 +106,7 @@ RenderedFrame SasMethod::render(const FrameRequest& request) {
   frame.shaded_texels = shade(request, slot, frame.timings);
   frame.picture = conversion_.picture(slot);
   frame.change = &change;
+  frame.requests = planner_->requests();
   frame.layout = counts_of(change);
   frame.usage = planner_->allocator().usage();
   frame.visible_patches = levels.visible;

@@ -31,6 +31,7 @@ class VideoMethod final : public Method {
   /// The request's camera has the extent VideoSettings::display.
   RenderedFrame render(const FrameRequest& request) override;
   [[nodiscard]] bool wants_intra() const override { return false; }
+  [[nodiscard]] std::optional<AllocatorSettings> memory() const override { return std::nullopt; }
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return {}; }
 
  private:

@@ -4,6 +4,7 @@
 #include "render/atlas/allocator.h"
 
 #include <map>
+#include <ostream>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,23 @@ inline BlockRequest request(std::uint32_t patch, std::uint32_t width, std::uint3
                             bool transposed = false) {
   return {PatchId{patch}, static_cast<std::uint8_t>(width), static_cast<std::uint8_t>(height), transposed};
 }
+
+inline AllocatorSettings small_atlas(std::uint32_t side = 256, std::uint32_t superblock = 5,
+                                     std::uint32_t least = 1) {
+  return {.atlas = {side, side}, .superblock_log2 = superblock, .min_block_log2 = least};
+}
+
+/// What a DriftingScene is walked with, for parameterized tests.
+struct DriftLoad {
+  const char* name;
+  AllocatorSettings settings;
+  std::uint32_t patches;
+  double churn;
+  double visible;
+  std::uint32_t largest_log2;
+  int frames;
+};
+inline void PrintTo(const DriftLoad& load, std::ostream* out) { *out << load.name; }
 
 /// A visible set that drifts: each frame a share of patches appears, goes or changes size.
 class DriftingScene {

@@ -8,11 +8,6 @@
 namespace atlaswire::render {
 namespace {
 
-AllocatorSettings small_atlas(std::uint32_t side = 256, std::uint32_t superblock = 5,
-                              std::uint32_t least = 1) {
-  return {.atlas = {side, side}, .superblock_log2 = superblock, .min_block_log2 = least};
-}
-
 /// One size for a run of patches.
 std::vector<BlockRequest> uniform(std::uint32_t first, std::uint32_t count, std::uint32_t w,
                                   std::uint32_t h) {

@@ -5,7 +5,6 @@
 #include "tests/render/gpu/gpu_fixture.h"
 
 #include <algorithm>
-#include <ostream>
 
 namespace atlaswire::render {
 namespace {
@@ -36,22 +35,7 @@ std::string difference(const AtlasAllocator& device, const LayoutChange& on_devi
   return {};
 }
 
-AllocatorSettings small_atlas(std::uint32_t side = 256, std::uint32_t superblock = 5,
-                              std::uint32_t least = 1) {
-  return {.atlas = {side, side}, .superblock_log2 = superblock, .min_block_log2 = least};
-}
-
-struct Load {
-  const char* name;
-  AllocatorSettings settings;
-  std::uint32_t patches;
-  double churn;
-  double visible;
-  std::uint32_t largest_log2;
-  int frames;
-};
-
-void PrintTo(const Load& load, std::ostream* out) { *out << load.name; }
+using Load = DriftLoad;
 
 class DeviceAllocatorDrift : public test::GpuTest, public testing::WithParamInterface<Load> {};
 
@@ -144,6 +128,29 @@ TEST_F(DeviceAllocatorTest, AgreesOnRequestsThatFlipEveryFrame) {
 TEST_F(DeviceAllocatorTest, ClampsWantsToLegalBlocks) {
   expect_equal(small_atlas(256, 5, 1), 4,
                {{request(0, 0, 0), request(1, 9, 9), request(2, 9, 0), request(3, 1, 3)}});
+}
+
+TEST_F(DeviceAllocatorTest, RestartsAsTheModelDoes) {
+  const auto settings = small_atlas();
+  DeviceAllocator allocator(device(), settings, 600);
+  auto model = make_sequential_allocator(settings, 600);
+  DriftingScene scene(7, 600, settings);
+  for (int frame = 0; frame < 120; ++frame) {
+    const auto& visible = scene.step(frame == 0 ? 1.0 : 0.1, 0.6, 4);
+    if (frame % 30 == 29) {
+      allocator.restart();
+      // A new one, which knows nothing of what was.
+      model = make_sequential_allocator(settings, 600);
+      model->restart();
+      allocator.update(visible, false);
+      model->update(visible, false);
+      ASSERT_EQ(difference(allocator, {}, *model, {}), "") << "frame " << frame;
+      continue;
+    }
+    const LayoutChange& on_device = allocator.update(visible, frame % 5 == 0);
+    ASSERT_EQ(difference(allocator, on_device, *model, model->update(visible, frame % 5 == 0)), "")
+        << "frame " << frame;
+  }
 }
 
 TEST_F(DeviceAllocatorTest, DrawnSlotsKeepEveryPromiseToo) {
