@@ -27,6 +27,7 @@ struct Options {
   std::uint32_t atlas = 1024;
   std::uint32_t grid_bits = 0;
   double turn_at = -1;
+  bool requests = false;
 };
 
 constexpr double kTurnRate = 1.5707963267948966;  // radians a second
@@ -47,6 +48,7 @@ void record(const Options& options) {
   server::StreamSettings settings;
   settings.render.atlas = {options.atlas, options.atlas};
   settings.grid_bits = options.grid_bits;
+  settings.meta_codec = options.requests ? codec::MetaCodecKind::kMirror : codec::MetaCodecKind::kGate;
   settings.max_fps = options.rate;
   settings.video.encoder = "raw";
   settings.video.intra_interval = 5;
@@ -64,6 +66,7 @@ void record(const Options& options) {
     request.restart = frame == 0;
     server::PreparedFrame prepared = stream.render(request);
     recording.updates.push_back(prepared.update);
+    recording.updates.back().cue.reset();  // a codec that needs one gets it when it is measured
     stream.encode(std::move(prepared)).value();
   }
   bench::write_recording(recording, options.out);
@@ -85,6 +88,7 @@ int main(int argc, char** argv) {
   app.add_option("--turn-at", options.turn_at,
                  "Stand where the path is at this second, and turn by 90 degrees a second");
   app.add_option("--grid-bits", options.grid_bits, "0: suited to the scene");
+  app.add_flag("--requests", options.requests, "What patches ask for instead of the blocks they got");
   CLI11_PARSE(app, argc, argv);
   try {
     record(options);

@@ -375,6 +375,9 @@ void NetworkThread::set_progress(const Progress& progress) {
 void NetworkThread::decode_failed() {
   impl_->with_session([](Session& s) { s.on_decode_failed(); });
 }
+void NetworkThread::request_restart(FrameId frame, std::string why) {
+  impl_->with_session([frame, why = std::move(why)](Session& s) { s.request_restart(frame, why); });
+}
 void NetworkThread::fail(std::string why) {
   impl_->with_session([why = std::move(why)](Session& s) { s.fail(why); });
 }

@@ -60,6 +60,7 @@ class NetworkThread {
   /// The rest may be called from any thread at any time.
   void set_progress(const Progress& progress);
   void decode_failed();
+  void request_restart(FrameId frame, std::string why);
   void fail(std::string why);
   /// At most 20 ms old.
   [[nodiscard]] NetworkSnapshot snapshot() const;

@@ -10,12 +10,21 @@ namespace {
 
 constexpr std::size_t kMaxWaitingPictures = 8;
 constexpr std::size_t kMaxWaitingUpdates = 128;
+/// Restarts that are asked for one after the other, unless so many updates in step lie between.
+constexpr std::uint32_t kMostRestarts = 4;
+constexpr std::uint32_t kLongInStep = 256;
 
 codec::MetaLimits limits_of(const proto::StreamDescription& stream) {
   return {.max_vertices = stream.max_vertices,
           .max_patches = stream.max_patches,
           .grid_bits = stream.grid.bits,
           .atlas = stream.atlas};
+}
+
+std::optional<LayoutMirror> mirror_for(const proto::StreamDescription& stream) {
+  const auto codec = static_cast<codec::MetaCodecKind>(stream.meta_codec);
+  if (!codec::leaves_positions(codec) || !stream.memory) return std::nullopt;
+  return std::optional<LayoutMirror>(std::in_place, *stream.memory, stream.atlas, stream.max_patches);
 }
 
 }  // namespace
@@ -34,6 +43,7 @@ PairMaker::PairMaker(const proto::StreamDescription& stream, DecodeSettings sett
       video_(stream.picture, settings_.threads, settings_.coding),
       meta_(
           codec::make_meta_decoder(static_cast<codec::MetaCodecKind>(stream.meta_codec), limits_of(stream))),
+      mirror_(mirror_for(stream)),
       pairing_(kMaxWaitingPictures, kMaxWaitingUpdates),
       replica_(limits_of(stream)),
       mesher_(stream.grid) {}
@@ -69,18 +79,40 @@ void PairMaker::on_update(UpdateArrival arrived) {
   if (broken_) return;
   const FrameId frame = arrived.update.meta.frame;
   const Time start = settings_.clock();
-  Result<codec::MetaUpdate> update = meta_->decode(arrived.update.meta.meta);
-  if (!update) {
-    return break_with(fmt::format("meta update {}: {}", value(frame), update.error().message()));
-  }
+  Result<codec::MetaUpdate> update = read(arrived.update.meta.meta);
+  if (!update) return lose_step(frame, update.error());
   if (update->frame != frame) {
     return break_with(fmt::format("meta update of frame {} came in the message of frame {}",
                                   value(update->frame), value(frame)));
   }
+  if (out_of_step_ && !update->reset) return;
+  out_of_step_ = false;
+  if (++in_step_for_ >= kLongInStep) restarts_in_a_row_ = 0;
   const Duration decoding = settings_.clock() - start;
   if (!pairing_.add_update(frame, {std::move(*update), std::move(arrived), decoding})) {
     break_with(fmt::format("meta update {} came out of order", value(frame)));
   }
+}
+
+Result<codec::MetaUpdate> PairMaker::read(ByteView bytes) {
+  Result<codec::MetaUpdate> update = meta_->decode(bytes);
+  if (!update || !update->cue) return update;
+  if (!mirror_) return Error{codec::MetaError::kBadVersion, "the atlas's memory was not described"};
+  return mirror_->place(std::move(*update));
+}
+
+/// Codecs that keep state can come back after an error, if the server tells all anew.
+void PairMaker::lose_step(FrameId frame, const Error& why) {
+  if (out_of_step_ && why.code == codec::MetaError::kOutOfStep) return;  // it is asked for already
+  const bool keeps_state = stream_.meta_codec != static_cast<std::uint32_t>(codec::MetaCodecKind::kPlain);
+  const std::string text = fmt::format("meta update {}: {}", value(frame), why.message());
+  if (!keeps_state || out_of_step_ || restarts_in_a_row_ == kMostRestarts) return break_with(text);
+  spdlog::warn("{}; asking for all anew", text);
+  out_of_step_ = true;
+  in_step_for_ = 0;
+  ++restarts_in_a_row_;
+  ++counts_.restarts;
+  troubles_.out_of_step(frame, text);
 }
 
 std::optional<Pair> PairMaker::next_pair() {

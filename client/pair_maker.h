@@ -1,6 +1,7 @@
 #pragma once
 
 #include "client/arrival.h"
+#include "client/layout_mirror.h"
 #include "client/pair.h"
 #include "client/pairing.h"
 #include "client/replica.h"
@@ -24,6 +25,7 @@ struct DecodeCounts {
   std::uint64_t failed = 0;       ///< access units that the decoder refused
   std::uint64_t skipped = 0;      ///< P-frames not tried because an IDR is due after a failure
   std::uint64_t never_shown = 0;  ///< pairs overtaken by a newer one before the display took them
+  std::uint64_t restarts = 0;  ///< asked for, because what we know had come apart from what the server tells
   PairingCounts pairing;
   std::uint64_t patches = 0;  ///< of the newest pair
   std::uint64_t triangles = 0;
@@ -33,6 +35,9 @@ struct DecodeCounts {
 struct DecodeTroubles {
   std::function<void()> decode_failed;          ///< a picture did not decode: an IDR is needed
   std::function<void(std::string)> peer_broke;  ///< the server contradicts itself: the session must end
+  /// What we know has come apart from what the server tells, as this frame's update shows: it must be asked
+  /// to tell all anew. The last pair stays valid.
+  std::function<void(FrameId, std::string)> out_of_step;
 };
 
 /// How a stream is decoded.
@@ -72,6 +77,8 @@ class PairMaker {
     Duration decoding{};
   };
 
+  Result<codec::MetaUpdate> read(ByteView bytes);
+  void lose_step(FrameId frame, const Error& why);
   Pair make_pair(const DecodedFrame& picture, const DecodedUpdate& update, Time start);
   void break_with(std::string why);
 
@@ -80,10 +87,14 @@ class PairMaker {
   DecodeTroubles troubles_;
   codec::VideoDecoder video_;
   std::unique_ptr<codec::MetaDecoder> meta_;
+  std::optional<LayoutMirror> mirror_;  ///< where updates leave out where blocks lie
   Pairing<DecodedFrame, DecodedUpdate> pairing_;
   Replica replica_;
   ReplicaMesher mesher_;
   bool needs_idr_ = false;
+  bool out_of_step_ = false;             ///< nothing is believed until an update with reset
+  std::uint32_t restarts_in_a_row_ = 0;  ///< that did not keep us in step for long
+  std::uint32_t in_step_for_ = 0;        ///< updates
   bool broken_ = false;
   DecodeCounts counts_;
 };

@@ -32,10 +32,9 @@ Json settings_json(const RunReport& r) {
 }
 
 Json frames_json(const RunReport& r) {
-  return {{"announced", r.frames_announced}, {"decoded", r.frames_decoded},
-          {"paired", r.frames_paired},       {"never_shown", r.frames_never_shown},
-          {"lost", r.frames_lost},           {"withheld", r.frames_withheld},
-          {"failed", r.frames_failed},       {"overrun", r.frames_overrun},
+  return {{"announced", r.frames_announced},     {"decoded", r.frames_decoded}, {"paired", r.frames_paired},
+          {"never_shown", r.frames_never_shown}, {"restarts", r.restarts},      {"lost", r.frames_lost},
+          {"withheld", r.frames_withheld},       {"failed", r.frames_failed},   {"overrun", r.frames_overrun},
           {"displayed", r.frames_displayed}};
 }
 

@@ -35,6 +35,7 @@ struct RunReport {
   std::uint64_t frames_announced = 0;  ///< by meta updates, whole run
   std::uint64_t frames_decoded = 0;
   std::uint64_t frames_paired = 0;
+  std::uint64_t restarts = 0;            ///< asked for, being out of step with the server
   std::uint64_t frames_never_shown = 0;  ///< pairs overtaken before the display took them
   std::uint64_t frames_lost = 0;         ///< missing packets
   std::uint64_t frames_withheld = 0;     ///< whole, but of no use until an IDR

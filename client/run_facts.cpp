@@ -31,6 +31,7 @@ void fill_report(const RunFacts& facts, RunReport& r) {
   r.frames_announced = last.updates;
   r.frames_decoded = facts.decoded.decoded;
   r.frames_paired = facts.decoded.pairing.paired;
+  r.restarts = facts.decoded.restarts;
   r.frames_never_shown = facts.decoded.never_shown;
   r.frames_lost = last.frames.lost;
   r.frames_withheld = last.frames.withheld + facts.decoded.skipped;

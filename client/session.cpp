@@ -310,6 +310,10 @@ void Session::drain_assembler() {
   }
 }
 
+void Session::request_restart(FrameId frame, const std::string& why) {
+  if (!end_ && answer_) send_message(proto::RestartRequest{.frame = frame, .text = why});
+}
+
 void Session::fail(const std::string& why) {
   if (!end_) break_off(why);
 }

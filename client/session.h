@@ -41,6 +41,8 @@ class Session {
   /// The decoder gave up: frames are withheld until an IDR, which is asked for.
   void on_decode_failed();
   void set_progress(const Progress& progress) { progress_ = progress; }
+  /// What the viewer knows has come apart from what the server tells: asks for all anew.
+  void request_restart(FrameId frame, const std::string& why);
   /// The viewer found the server to break the protocol (a replica that cannot be updated, say).
   void fail(const std::string& why);
   /// The viewer has seen enough: says Goodbye and ends.

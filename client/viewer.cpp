@@ -85,9 +85,12 @@ class Viewer {
                           {.ipd = settings_.stereo ? settings_.ipd : 0, .lens = settings_.lens});
     std::optional<PictureWriter> writer;
     if (settings_.png_every != 0) writer.emplace();
-    DecodeThread decoder(stream, {.threads = settings_.decoder_threads}, arrivals_, pairs_,
-                         {.decode_failed = [this] { network_->decode_failed(); },
-                          .peer_broke = [this](std::string why) { network_->fail(std::move(why)); }});
+    DecodeThread decoder(
+        stream, {.threads = settings_.decoder_threads}, arrivals_, pairs_,
+        {.decode_failed = [this] { network_->decode_failed(); },
+         .peer_broke = [this](std::string why) { network_->fail(std::move(why)); },
+         .out_of_step = [this](FrameId frame,
+                               std::string why) { network_->request_restart(frame, std::move(why)); }});
     const CloseAtExit close{arrivals_};  // or the decode thread would never end
     const DisplayHooks hooks{.should_stop = [this] { return interrupted() || network_->end().has_value(); },
                              .on_progress = [this](const Progress& p) { on_progress(p); },

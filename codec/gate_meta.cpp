@@ -10,8 +10,11 @@ namespace atlaswire::codec {
 
 namespace {
 
-constexpr std::uint8_t kForm = 0xA2;       // "atlaswire meta", form 2
-constexpr std::uint8_t kResetForm = 0xA3;  // the same, everything forgotten first
+/// "atlaswire meta", form 2; with derived positions form 4.
+constexpr std::uint8_t form_of(BlockPositions positions) {
+  return positions == BlockPositions::kSent ? 0xA2 : 0xA4;
+}
+constexpr std::uint8_t kReset = 1;  // added to the form: everything is forgotten first
 
 /// Patches that both ends may know at once.
 constexpr std::uint32_t kMostResidents = 1U << 22U;
@@ -32,22 +35,26 @@ std::uint64_t unguessable() {
 
 }  // namespace
 
-GateMetaEncoder::GateMetaEncoder(const MetaLimits& limits) : limits_(limits), state_(0) {}
+GateMetaEncoder::GateMetaEncoder(const MetaLimits& limits, BlockPositions positions)
+    : limits_(limits), positions_(positions), state_(0) {}
 
 void GateMetaEncoder::encode(const MetaUpdate& update, ByteBuffer& out) {
+  AW_ASSERT(update.cue.has_value() == (positions_ == BlockPositions::kDerived));
   const std::size_t start = out.size();
-  out.push_back(static_cast<std::byte>(update.reset ? kResetForm : kForm));
+  out.push_back(static_cast<std::byte>(form_of(positions_) + (update.reset ? kReset : 0)));
   if (update.reset) state_.clear();
   plan_.begin(update, state_);
   RangeEncoder coder(out);
-  GateScript<RangeEncoder>(coder, state_, limits_, ~0U, &plan_).code(update.reset, nullptr);
+  std::optional<LayoutCue> cue = update.cue;
+  GateScript<RangeEncoder>(coder, state_, limits_, ~0U, cue ? &*cue : nullptr, &plan_)
+      .code(update.reset, nullptr);
   coder.finish();
   const std::size_t least = plan_.arrivals().size() / kNewPerOctet + 1;
   out.resize(std::max(out.size(), start + least));
 }
 
-GateMetaDecoder::GateMetaDecoder(const MetaLimits& limits, bool believes_all)
-    : limits_(limits), state_(unguessable()), believes_all_(believes_all) {
+GateMetaDecoder::GateMetaDecoder(const MetaLimits& limits, BlockPositions positions, bool believes_all)
+    : limits_(limits), positions_(positions), state_(unguessable()), believes_all_(believes_all) {
   AW_ASSERT(limits.grid_bits <= 20);
 }
 
@@ -55,18 +62,20 @@ Result<MetaUpdate> GateMetaDecoder::decode(ByteView bytes) {
   if (bytes.empty()) return MetaError::kTruncated;
   if (bytes.size() > kMaxMetaBody) return MetaError::kTooLarge;
   const auto form = std::to_integer<std::uint8_t>(bytes[0]);
-  if (form != kForm && form != kResetForm) return MetaError::kBadVersion;
+  if ((form & ~kReset) != form_of(positions_)) return MetaError::kBadVersion;
   MetaUpdate update;
-  update.reset = form == kResetForm;
+  update.reset = (form & kReset) != 0;
+  if (positions_ == BlockPositions::kDerived) update.cue.emplace();
   if (update.reset) {
     state_.clear();
     broken_ = false;
   }
   if (broken_) return MetaError::kOutOfStep;
   RangeDecoder coder(bytes.subspan(1));
-  const auto error = GateScript<RangeDecoder>(coder, state_, limits_,
-                                              most_new(limits_, state_.residents, bytes.size()), nullptr)
-                         .code(update.reset, &update);
+  const auto error =
+      GateScript<RangeDecoder>(coder, state_, limits_, most_new(limits_, state_.residents, bytes.size()),
+                               update.cue ? &*update.cue : nullptr, nullptr)
+          .code(update.reset, &update);
   broken_ = true;
   if (error && !(believes_all_ && *error == MetaError::kOutOfStep)) return *error;
   const ByteView unread = bytes.last(coder.unread());

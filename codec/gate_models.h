@@ -36,6 +36,8 @@ struct GateModels {
   AdaptiveUnsigned drop_skip;
   AdaptiveUnsigned drop_length;
 
+  AdaptiveBit memory_reset;  ///< only where positions are derived
+
   // Who comes and goes.
   std::array<AdaptiveBit, 3> calm_group;      ///< by whether the calm groups before stayed calm
   std::array<AdaptiveBit, 256 * 4 * 3> flip;  ///< by history, the patch before, and how long calm

@@ -20,15 +20,18 @@ namespace atlaswire::codec {
 template <class Coder>
 class GateScript {
  public:
-  /// `most_new`: patches that may come new. `plan`, only when encoding.
-  GateScript(Coder& coder, GateState& state, const MetaLimits& limits, std::uint32_t most_new, GatePlan* plan)
-      : coder_(&coder), state_(&state), limits_(&limits), most_new_(most_new), plan_(plan) {}
+  /// `most_new`: patches that may come new. `cue`: coded instead of where blocks lie; null: positions are.
+  /// `plan`, only when encoding.
+  GateScript(Coder& coder, GateState& state, const MetaLimits& limits, std::uint32_t most_new, LayoutCue* cue,
+             GatePlan* plan)
+      : coder_(&coder), state_(&state), limits_(&limits), most_new_(most_new), cue_(cue), plan_(plan) {}
 
   /// The update's effect, as a MetaUpdate if decoding; an error only if decoding: the state is nonsense then.
   std::optional<MetaError> code(bool first, MetaUpdate* effect);
 
  private:
   void code_frame(bool first);
+  void code_cue();
   bool code_drops();
   void drop();
   bool code_presence();
@@ -45,6 +48,7 @@ class GateScript {
   GateState* state_;
   const MetaLimits* limits_;
   std::uint32_t most_new_;
+  LayoutCue* cue_;
   GatePlan* plan_;
   std::vector<bool> drops_;
   std::vector<PatchId> removed_;
@@ -59,6 +63,7 @@ template <class Coder>
 std::optional<MetaError> GateScript<Coder>::code(bool first, MetaUpdate* effect) {
   const std::uint32_t first_vertex = state_->vertices.size();
   code_frame(first);
+  if (cue_ != nullptr) code_cue();
   if (!(code_drops() && code_presence() && code_shapes() && code_blocks())) return error_;
   if (effect != nullptr) report(*effect, first_vertex);
   for (const Placement& p : placements_) state_->residents.block(p.resident) = p.block;
@@ -77,6 +82,13 @@ void GateScript<Coder>::code_frame(bool first) {
     state_->frame = FrameId{coder_->code_raw(value(wanted), 32)};
   }
   state_->mix(value(state_->frame));
+}
+
+template <class Coder>
+void GateScript<Coder>::code_cue() {
+  cue_->reset = coder_->code(state_->models.memory_reset, cue_->reset);
+  cue_->check = static_cast<std::uint16_t>(coder_->code_raw(cue_->check, 16));
+  state_->mix(std::uint32_t{cue_->check} << 1U | static_cast<std::uint32_t>(cue_->reset));
 }
 
 /// Runs of forgotten patches over all that are known.
@@ -158,8 +170,9 @@ bool GateScript<Coder>::code_blocks() {
       block.x = wanted->x;
       block.y = wanted->y;
     }
-    if (!code_block_position(*coder_, state_->models, limits_->atlas, block))
+    if (cue_ == nullptr && !code_block_position(*coder_, state_->models, limits_->atlas, block)) {
       return fail(MetaError::kBadBlock);
+    }
     state_->mix(block);
     return true;
   };
@@ -177,7 +190,7 @@ bool GateScript<Coder>::code_blocks() {
 /// Tells a decoder that it knows what the encoder knows.
 template <class Coder>
 bool GateScript<Coder>::code_hash() {
-  const std::uint32_t own = state_->hash >> 16U;
+  const std::uint32_t own = state_->hash.upper();
   return coder_->code_raw(own, 16) == own || fail(MetaError::kOutOfStep);
 }
 

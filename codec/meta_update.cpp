@@ -11,6 +11,8 @@ const char* name(MetaCodecKind kind) {
       return "plain";
     case MetaCodecKind::kGate:
       return "gate";
+    case MetaCodecKind::kMirror:
+      return "mirror";
   }
   return "unknown";
 }
@@ -28,6 +30,8 @@ std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLim
       return std::make_unique<PlainMetaEncoder>();
     case MetaCodecKind::kGate:
       return std::make_unique<GateMetaEncoder>(limits);
+    case MetaCodecKind::kMirror:
+      return std::make_unique<GateMetaEncoder>(limits, BlockPositions::kDerived);
   }
   return nullptr;
 }
@@ -38,6 +42,8 @@ std::unique_ptr<MetaDecoder> make_meta_decoder(MetaCodecKind kind, const MetaLim
       return std::make_unique<PlainMetaDecoder>(limits);
     case MetaCodecKind::kGate:
       return std::make_unique<GateMetaDecoder>(limits);
+    case MetaCodecKind::kMirror:
+      return std::make_unique<GateMetaDecoder>(limits, BlockPositions::kDerived);
   }
   return nullptr;
 }

@@ -39,6 +39,12 @@ struct MovedPatch {
   Block block;
 };
 
+/// What a receiver must know that derives where blocks lie, besides what each patch asks for.
+struct LayoutCue {
+  bool reset = false;       ///< the atlas's memory begins anew: every block is placed afresh
+  std::uint16_t check = 0;  ///< of the layout that comes about (render::LayoutHash)
+};
+
 /// Everything that changes a client's replica from frame to frame ([SAS] 3.3). Apply in this order: reset,
 /// removed, vertices, added, moved. Vertices stay known after their last patch is removed.
 struct MetaUpdate {
@@ -48,6 +54,9 @@ struct MetaUpdate {
   std::vector<NewVertex> vertices;
   std::vector<AddedPatch> added;
   std::vector<MovedPatch> moved;
+  /// Only of codecs that leave positions to the receiver: then all blocks are sizes that patches ask for, at
+  /// the origin, and who is removed asks no longer.
+  std::optional<LayoutCue> cue;
 };
 
 /// What limits a decoder: agreed in StreamInfo, checked before memory is allocated.
@@ -81,14 +90,18 @@ class MetaDecoder {
 
 /// Which meta codec both ends use; a number on the wire.
 enum class MetaCodecKind : std::uint8_t {
-  kPlain = 1,  ///< every update alone, zstd: simple, large
-  kGate = 2,   ///< incremental: a quarter of the bytes, or less
+  kPlain = 1,   ///< every update alone, zstd: simple, large
+  kGate = 2,    ///< incremental: a quarter of the bytes, or less
+  kMirror = 4,  ///< kGate without the positions of blocks: the receiver runs the atlas's memory itself
 };
 
 /// All of them, those with the fewest bytes first.
-inline constexpr std::array kMetaCodecs{MetaCodecKind::kGate, MetaCodecKind::kPlain};
+inline constexpr std::array kMetaCodecs{MetaCodecKind::kMirror, MetaCodecKind::kGate, MetaCodecKind::kPlain};
 
-/// "plain", "gate": as settings and reports call it.
+/// Its updates carry a LayoutCue.
+constexpr bool leaves_positions(MetaCodecKind kind) { return kind == MetaCodecKind::kMirror; }
+
+/// "plain", "gate", "mirror": as settings and reports call it.
 const char* name(MetaCodecKind kind);
 std::optional<MetaCodecKind> find_meta_codec(std::string_view name);
 

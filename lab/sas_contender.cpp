@@ -40,10 +40,11 @@ class SasContender final : public Contender {
       : settings_(stream_settings(point)),
         stream_(settings_, scene, render::make_method(settings_.method, device, scene, settings_.render)),
         description_(describe(*scene, stream_, settings_)),
-        pairs_(
-            description_, {.coding = video_coding(point), .clock = steady_now},
-            {.decode_failed = [this] { refresh_ = true; },
-             .peer_broke = [](const std::string& why) { throw std::logic_error("stream broke: " + why); }}),
+        pairs_(description_, {.coding = video_coding(point), .clock = steady_now},
+               {.decode_failed = [this] { refresh_ = true; },
+                .peer_broke = [](const std::string& why) { throw std::logic_error("stream broke: " + why); },
+                .out_of_step =
+                    [](FrameId, const std::string& why) { throw std::logic_error("out of step: " + why); }}),
         renderer_(device, description_, display_camera(point), {.lens = display_lens(point)}) {}
 
   server::FrameMaker& maker() override { return stream_; }

@@ -78,6 +78,15 @@ Result<void> check(const wire::StreamInfo& m) {
   rules.require(m.grid_step() > 0 && m.grid_step() <= 1e6, "stream.grid_step");
   rules.require(m.grid_bits() >= 8 && m.grid_bits() <= 20, "stream.grid_bits");
   rules.require(m.meta_codec() >= 1 && m.meta_codec() <= 255, "stream.meta_codec");
+  if (m.has_memory()) {
+    rules.require(
+        m.memory().superblock_log2() >= 4 && m.memory().superblock_log2() <= 12 &&
+            ((m.atlas().width() | m.atlas().height()) & ((1U << m.memory().superblock_log2()) - 1)) == 0,
+        "stream.memory.superblock_log2");
+    rules.require(m.memory().min_block_log2() <= m.memory().superblock_log2(),
+                  "stream.memory.min_block_log2");
+    rules.require(in_range(m.memory().high_water(), 0, 1), "stream.memory.high_water");
+  }
   rules.require(m.max_vertices() >= 1 && m.max_vertices() <= kMaxIds, "stream.max_vertices");
   rules.require(m.max_patches() >= 1 && m.max_patches() <= kMaxIds, "stream.max_patches");
   rules.require(m.payload_type() >= 96 && m.payload_type() <= 127, "stream.payload_type");
@@ -125,6 +134,12 @@ Result<void> check(const wire::Goodbye& m) {
   return rules.result();
 }
 
+Result<void> check(const wire::RestartRequest& m) {
+  Rules rules;
+  rules.require(is_text(m.text(), 1024), "restart_request.text");
+  return rules.result();
+}
+
 Result<void> check(const wire::StatsReport& m) {
   Rules rules;
   rules.require(in_range(m.display_rate(), 0, 10'000), "stats_report.display_rate");
@@ -149,6 +164,8 @@ Result<void> check_envelope(const wire::Envelope& envelope) {
       return check(envelope.goodbye());
     case wire::Envelope::kStatsReport:
       return check(envelope.stats_report());
+    case wire::Envelope::kRestartRequest:
+      return check(envelope.restart_request());
     case wire::Envelope::MESSAGE_NOT_SET:
       break;
   }

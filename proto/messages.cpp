@@ -58,6 +58,9 @@ StreamDescription from_wire(const wire::StreamInfo& m) {
   out.grid.step = m.grid_step();
   out.grid.bits = m.grid_bits();
   out.meta_codec = m.meta_codec();
+  if (m.has_memory()) {
+    out.memory = {m.memory().superblock_log2(), m.memory().min_block_log2(), m.memory().high_water()};
+  }
   out.max_vertices = m.max_vertices();
   out.max_patches = m.max_patches();
   out.ssrc = m.ssrc();
@@ -82,6 +85,11 @@ void to_wire(const StreamDescription& m, wire::StreamInfo& out) {
   out.set_grid_step(m.grid.step);
   out.set_grid_bits(m.grid.bits);
   out.set_meta_codec(m.meta_codec);
+  if (m.memory) {
+    out.mutable_memory()->set_superblock_log2(m.memory->superblock_log2);
+    out.mutable_memory()->set_min_block_log2(m.memory->min_block_log2);
+    out.mutable_memory()->set_high_water(m.memory->high_water);
+  }
   out.set_max_vertices(m.max_vertices);
   out.set_max_patches(m.max_patches);
   out.set_ssrc(m.ssrc);
@@ -170,6 +178,14 @@ void to_wire(const StatsReport& m, wire::Envelope& envelope) {
   out.set_motion_to_photon(m.motion_to_photon.count());
 }
 
+RestartRequest from_wire(const wire::RestartRequest& m) { return {FrameId{m.frame()}, m.text()}; }
+
+void to_wire(const RestartRequest& m, wire::Envelope& envelope) {
+  auto& out = *envelope.mutable_restart_request();
+  out.set_frame(value(m.frame));
+  out.set_text(to_plain_text(m.text, 1024));
+}
+
 }  // namespace
 
 Result<Message> parse_message(ByteView bytes) {
@@ -188,6 +204,8 @@ Result<Message> parse_message(ByteView bytes) {
       return Message{from_wire(envelope->goodbye())};
     case wire::Envelope::kStatsReport:
       return Message{from_wire(envelope->stats_report())};
+    case wire::Envelope::kRestartRequest:
+      return Message{from_wire(envelope->restart_request())};
     case wire::Envelope::MESSAGE_NOT_SET:
       break;
   }
@@ -207,8 +225,8 @@ void append_message(const Message& message, ByteBuffer& out) {
 }
 
 const char* message_name(const Message& message) {
-  constexpr const char* kNames[] = {"client hello", "server hello", "frame meta",
-                                    "refusal",      "goodbye",      "stats report"};
+  constexpr const char* kNames[] = {"client hello", "server hello", "frame meta",     "refusal",
+                                    "goodbye",      "stats report", "restart request"};
   return kNames[message.index()];
 }
 

@@ -94,7 +94,14 @@ struct StatsReport {
   Duration motion_to_photon{};  ///< median since the last report; 0..60 s
 };
 
-using Message = std::variant<ClientHello, ServerHello, FrameMeta, Refusal, Goodbye, StatsReport>;
+/// Client to server: what I know has come apart from what you tell; tell me all anew.
+struct RestartRequest {
+  FrameId frame{};   ///< whose update showed it
+  std::string text;  ///< one line for people, at most 1024 octets
+};
+
+using Message =
+    std::variant<ClientHello, ServerHello, FrameMeta, Refusal, Goodbye, StatsReport, RestartRequest>;
 
 /// Parses one envelope (without its length prefix) and checks every field: see envelope.h for what is
 /// refused. The error's detail names the field.

@@ -5,9 +5,18 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace atlaswire::proto {
+
+/// The atlas's memory, for clients that derive where blocks lie. docs/PROTOCOL.md, "Atlas memory".
+struct AtlasMemory {
+  std::uint32_t superblock_log2 = 6;  ///< side; divides the atlas's; 4..12
+  std::uint32_t min_block_log2 = 1;   ///< side of the smallest block; not above the superblock's
+  double high_water = 0.95;           ///< share of texels in use, 0..1
+  bool operator==(const AtlasMemory&) const = default;
+};
 
 /// What a client must know of a stream before its first frame; StreamInfo on the wire.
 struct StreamDescription {
@@ -17,6 +26,7 @@ struct StreamDescription {
   bool has_coverage = false;  ///< picture height is then at least twice the atlas's
   PositionGrid grid;
   std::uint32_t meta_codec = 1;              ///< codec::MetaCodecKind
+  std::optional<AtlasMemory> memory;         ///< nullopt: blocks' places cannot be derived
   std::uint32_t max_vertices = 1U << 22U;    ///< vertex ids are below this; 1..2^26
   std::uint32_t max_patches = 1U << 22U;     ///< patch ids are below this; 1..2^26
   std::uint32_t ssrc = 0;                    ///< of the media stream

@@ -22,12 +22,17 @@ codec::I420View view_of(const render::I420Picture& picture) {
   return {picture.extent, picture.y, picture.u, picture.v, picture.extent.width, picture.extent.width / 2};
 }
 
+/// The method may have no memory that a receiver can mirror.
+codec::MetaCodecKind suited(codec::MetaCodecKind wanted, const render::Method& method) {
+  return leaves_positions(wanted) && !method.memory() ? codec::MetaCodecKind::kGate : wanted;
+}
+
 }  // namespace
 
 AtlasStream::AtlasStream(const StreamSettings& settings, std::shared_ptr<const render::Scene> scene,
                          std::unique_ptr<render::Method> method)
-    : preferred_meta_codec_(settings.meta_codec),
-      method_(std::move(method)),
+    : method_(std::move(method)),
+      preferred_meta_codec_(suited(settings.meta_codec, *method_)),
       tracker_(std::move(scene), settings.grid_bits),
       schedule_({.interval = settings.video.intra_interval}),
       video_(video_settings(settings, method_->picture_extent())),
@@ -45,20 +50,30 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
   prepared.bit_rate = request.bit_rate;
   prepared.stamps.pose_received = request.pose_received;
   prepared.intra = schedule_.next();
-  prepared.rendered =
-      method_->render({next_frame_, request.camera, request.cover, prepared.intra, request.hints});
-  prepared.update = update_for(request, prepared.rendered);
-  if (prepared.update.reset) prepared.meta_codec = request.meta_codec.value_or(preferred_meta_codec_);
+  const bool restart = request.restart || !std::exchange(told_, true);
+  if (restart) told_as_ = request.meta_codec.value_or(preferred_meta_codec_);
+  prepared.rendered = method_->render({.frame = next_frame_,
+                                       .camera = request.camera,
+                                       .cover = request.cover,
+                                       .intra = prepared.intra,
+                                       .restart = restart && leaves_positions(told_as_),
+                                       .hints = request.hints});
+  prepared.update = update_for(prepared.rendered, restart);
+  if (restart) prepared.meta_codec = told_as_;
   prepared.rendered.change = nullptr;
+  prepared.rendered.requests = {};
   next_frame_ = next(next_frame_);
   return prepared;
 }
 
-codec::MetaUpdate AtlasStream::update_for(const ViewRequest& request, const render::RenderedFrame& rendered) {
-  if (request.restart || !std::exchange(told_, true)) {
-    return tracker_.restart(rendered.frame, method_->blocks());
+codec::MetaUpdate AtlasStream::update_for(const render::RenderedFrame& rendered, bool restart) {
+  std::vector<render::PlacedPatch> live;
+  if (restart || rendered.change->reset) live = method_->blocks();
+  if (leaves_positions(told_as_)) {
+    const ReplicaTracker::Asked asked{rendered.requests, rendered.change, live};
+    return restart ? tracker_.restart(rendered.frame, asked) : tracker_.update(rendered.frame, asked);
   }
-  return tracker_.update(rendered.frame, *rendered.change);
+  return restart ? tracker_.restart(rendered.frame, live) : tracker_.update(rendered.frame, *rendered.change);
 }
 
 namespace {
@@ -118,6 +133,9 @@ proto::StreamDescription describe(const render::Scene& scene, const AtlasStream&
   d.has_coverage = scene.requirements.alpha();
   d.grid = stream.grid();
   d.meta_codec = static_cast<std::uint32_t>(stream.preferred_meta_codec());
+  if (const auto memory = stream.memory()) {
+    d.memory = {memory->superblock_log2, memory->min_block_log2, memory->high_water};
+  }
   d.max_vertices = std::max(1U, static_cast<std::uint32_t>(scene.positions.size()));
   d.max_patches = std::max(1U, static_cast<std::uint32_t>(scene.patches.size()));
   d.frame_rate = settings.max_fps;

@@ -7,6 +7,7 @@
 #include "server/settings.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace atlaswire::server {
@@ -23,8 +24,11 @@ class AtlasStream final : public FrameMaker {
   Result<EncodedFrame> encode(PreparedFrame prepared) override;
 
   [[nodiscard]] Extent2D picture_extent() const { return method_->picture_extent(); }
-  /// For clients that know it; a restart may choose another.
+  /// For clients that know it: the settings', or the best after it that suits the method; a restart may
+  /// choose another that does.
   [[nodiscard]] codec::MetaCodecKind preferred_meta_codec() const { return preferred_meta_codec_; }
+  /// For clients that derive where blocks lie; nullopt: the method's layout cannot be derived.
+  [[nodiscard]] std::optional<render::AllocatorSettings> memory() const { return method_->memory(); }
   [[nodiscard]] const PositionGrid& grid() const { return tracker_.grid(); }
   /// SPS and PPS, Annex B; empty before the first frame. Encoding thread.
   [[nodiscard]] const ByteBuffer& parameter_sets() const { return video_.parameter_sets(); }
@@ -32,16 +36,16 @@ class AtlasStream final : public FrameMaker {
   [[nodiscard]] const std::string& encoder_name() const { return video_.name(); }
 
  private:
-  [[nodiscard]] codec::MetaUpdate update_for(const ViewRequest& request,
-                                             const render::RenderedFrame& rendered);
+  [[nodiscard]] codec::MetaUpdate update_for(const render::RenderedFrame& rendered, bool restart);
 
-  const codec::MetaCodecKind preferred_meta_codec_;
   // Rendering thread.
   std::unique_ptr<render::Method> method_;
+  const codec::MetaCodecKind preferred_meta_codec_;
   ReplicaTracker tracker_;
   IntraSchedule schedule_;
   FrameId next_frame_{};
-  bool told_ = false;  ///< clients have been told the whole once
+  bool told_ = false;               ///< clients have been told the whole once
+  codec::MetaCodecKind told_as_{};  ///< since they were
   // Encoding thread.
   codec::VideoEncoder video_;
   codec::MetaLimits limits_;

@@ -4,6 +4,7 @@
 #include "server/udp_port.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
@@ -159,6 +160,10 @@ void Connection::steer_stream() {
     runner_->set_view(pose->stamped, pose->received, session_.round_trip());
   }
   if (session_.take_refresh_request()) runner_->request_refresh();
+  if (const auto why = session_.take_restart_request(steady_now())) {
+    spdlog::warn("session {}: the client is out of step, all is told anew: {}", value(session_.id()), *why);
+    runner_->request_restart();
+  }
   runner_->set_paused(session_.is_congested());
 }
 

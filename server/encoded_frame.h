@@ -32,7 +32,7 @@ struct PreparedFrame {
   PoseId pose{};
   Duration cover{};
   bool intra = false;
-  render::RenderedFrame rendered;  ///< `change` is null: `update` has it
+  render::RenderedFrame rendered;  ///< without `change` and `requests`: `update` has them
   codec::MetaUpdate update;
   std::optional<codec::MetaCodecKind> meta_codec;  ///< from this update on
   std::optional<BitRate> bit_rate;

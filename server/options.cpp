@@ -91,8 +91,10 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
       "--level-hysteresis", render.level_hysteresis,
       "Octaves past the border between two block sizes before a block changes, 0..1: blocks that "
       "stay against the best size for each");
-  group->add_option("--meta-codec", raw.meta_codec,
-                    "How geometry travels to clients that know it: gate (fewest bytes) or plain");
+  group->add_option(
+      "--meta-codec", raw.meta_codec,
+      "How geometry travels to clients that know it: mirror (fewest bytes: they lay the atlas out "
+      "themselves), gate or plain");
   group->add_option("--reshade-interval", render.reshade_interval,
                     "Shade each block at least every N-th frame, 1..60: speed against stale reflections");
   group->add_option(
@@ -200,7 +202,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   demand_range("--reshade-interval", render.reshade_interval, 1U, 60U);
   if (s.grid_bits != 0) demand_range("--grid-bits", s.grid_bits, 8U, 20U);
   const auto meta_codec = codec::find_meta_codec(raw.meta_codec);
-  if (!meta_codec) refuse_option("--meta-codec", raw.meta_codec, "gate or plain");
+  if (!meta_codec) refuse_option("--meta-codec", raw.meta_codec, "mirror, gate or plain");
   s.meta_codec = *meta_codec;
   apply_cover(raw.cover, s.cover);
 }

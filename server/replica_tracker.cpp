@@ -29,7 +29,7 @@ codec::MetaUpdate ReplicaTracker::update(FrameId frame, const render::LayoutChan
   update.frame = frame;
   update.removed = change.removed;
   update.added.reserve(change.added.size());
-  for (const auto& placed : change.added) add(placed, update);
+  for (const auto& placed : change.added) add(placed.patch, placed.block, update);
   update.moved.reserve(change.moved.size());
   for (const auto& placed : change.moved) update.moved.push_back({placed.patch, placed.block});
   add_vertices(update);
@@ -37,24 +37,79 @@ codec::MetaUpdate ReplicaTracker::update(FrameId frame, const render::LayoutChan
 }
 
 codec::MetaUpdate ReplicaTracker::restart(FrameId frame, std::span<const render::PlacedPatch> blocks) {
-  known_.assign(known_.size(), false);
+  forget();
   codec::MetaUpdate update;
   update.frame = frame;
   update.reset = true;
   update.added.reserve(blocks.size());
-  for (const auto& placed : blocks) add(placed, update);
+  for (const auto& placed : blocks) add(placed.patch, placed.block, update);
   add_vertices(update);
   return update;
 }
 
-void ReplicaTracker::add(const render::PlacedPatch& placed, codec::MetaUpdate& update) {
-  AW_ASSERT(value(placed.patch) < scene_->patches.size());
-  const render::Patch& patch = scene_->patches[value(placed.patch)];
+void ReplicaTracker::forget() {
+  known_.assign(known_.size(), false);
+  asked_.clear();
+}
+
+codec::MetaUpdate ReplicaTracker::update(FrameId frame, const Asked& asked) {
+  codec::MetaUpdate update;
+  update.frame = frame;
+  compare(asked, update);
+  add_vertices(update);
+  if (asked.change->reset) {
+    layout_.begin(asked.live);
+  } else {
+    layout_.follow(*asked.change);
+  }
+  update.cue = {.reset = asked.change->reset, .check = layout_.hash().upper()};
+  return update;
+}
+
+codec::MetaUpdate ReplicaTracker::restart(FrameId frame, const Asked& asked) {
+  AW_ASSERT(asked.change->reset);
+  forget();
+  codec::MetaUpdate all = update(frame, asked);
+  all.reset = true;
+  return all;
+}
+
+namespace {
+
+Block wanted_block(const render::BlockRequest& request) {
+  return {
+      .width_log2 = request.width_log2, .height_log2 = request.height_log2, .transposed = request.transposed};
+}
+
+}  // namespace
+
+/// Who asks that did not ask in the frame before, who asks no longer, and who asks for something else.
+void ReplicaTracker::compare(const Asked& asked, codec::MetaUpdate& update) {
+  auto before = asked_.begin();
+  for (const render::BlockRequest& request : asked.requests) {
+    for (; before != asked_.end() && before->patch < request.patch; ++before) {
+      update.removed.push_back(before->patch);
+    }
+    const Block block = wanted_block(request);
+    if (before == asked_.end() || before->patch != request.patch) {
+      add(request.patch, block, update);
+      continue;
+    }
+    if (wanted_block(*before) != block) update.moved.push_back({request.patch, block});
+    ++before;
+  }
+  for (; before != asked_.end(); ++before) update.removed.push_back(before->patch);
+  asked_.assign(asked.requests.begin(), asked.requests.end());
+}
+
+void ReplicaTracker::add(PatchId id, const Block& block, codec::MetaUpdate& update) {
+  AW_ASSERT(value(id) < scene_->patches.size());
+  const render::Patch& patch = scene_->patches[value(id)];
   codec::AddedPatch added;
-  added.id = placed.patch;
+  added.id = id;
   added.triangles = patch.triangles;
   added.draw = scene_->materials[patch.material].draw;
-  added.block = placed.block;
+  added.block = block;
   for (std::uint32_t corner = 0; corner < corner_count(patch.triangles); ++corner) {
     const VertexId vertex = patch.positions[corner];
     added.corners[corner] = vertex;

@@ -2,7 +2,7 @@
 
 #include "base/grid.h"
 #include "codec/meta_update.h"
-#include "render/atlas/allocator.h"
+#include "render/atlas/layout_hash.h"
 #include "render/scene/scene.h"
 
 #include <memory>
@@ -23,18 +23,33 @@ class ReplicaTracker {
   /// new client needs. Stands in for `update` of that frame.
   codec::MetaUpdate restart(FrameId frame, std::span<const render::PlacedPatch> blocks);
 
+  /// What one frame's layout follows from, and the layout.
+  struct Asked {
+    std::span<const render::BlockRequest> requests;  ///< ascending
+    const render::LayoutChange* change = nullptr;
+    std::span<const render::PlacedPatch> live;  ///< every block, ascending; only looked at if `change` resets
+  };
+  /// The same two for clients that derive the layout: what patches ask for instead of the blocks they got.
+  /// `change` must be a reset where clients start from nothing.
+  codec::MetaUpdate update(FrameId frame, const Asked& asked);
+  codec::MetaUpdate restart(FrameId frame, const Asked& asked);
+
   [[nodiscard]] const PositionGrid& grid() const { return grid_; }
   /// What decoders must be prepared for.
   [[nodiscard]] codec::MetaLimits limits(const Extent2D& atlas) const;
 
  private:
-  void add(const render::PlacedPatch& placed, codec::MetaUpdate& update);
+  void forget();
+  void add(PatchId patch, const Block& block, codec::MetaUpdate& update);
+  void compare(const Asked& asked, codec::MetaUpdate& update);
   void add_vertices(codec::MetaUpdate& update);
 
   std::shared_ptr<const render::Scene> scene_;
   PositionGrid grid_;
-  std::vector<bool> known_;              ///< by VertexId
-  std::vector<std::uint32_t> new_ones_;  ///< of the update being made
+  std::vector<bool> known_;                  ///< by VertexId
+  std::vector<std::uint32_t> new_ones_;      ///< of the update being made
+  std::vector<render::BlockRequest> asked_;  ///< as clients know it, ascending
+  render::LayoutHash layout_;                ///< as clients that derive it must have it
 };
 
 /// The grid that clients of a scene share: over its bounding box, in scene coordinates.

@@ -33,6 +33,8 @@ MediaOutbox::Settings media_settings(const SessionSettings& s, const SessionKeys
 }
 
 constexpr std::size_t kMaxText = 1024;
+/// A restart costs an I-frame and everything told anew: however often a client asks, no more of them.
+constexpr Duration kRestartSpacing = std::chrono::seconds(1);
 
 std::optional<Time> earliest(std::optional<Time> a, std::optional<Time> b) {
   if (!a || !b) return a ? a : b;
@@ -95,12 +97,25 @@ void Session::on_message(const proto::Message& message, Time now) {
     return finish(fmt::format("client left ({}{}{})", proto::name(bye->reason), bye->text.empty() ? "" : ": ",
                               bye->text),
                   now);
+  } else if (const auto* lost = std::get_if<proto::RestartRequest>(&message)) {
+    return on_restart_request(*lost);
   } else if (std::holds_alternative<proto::StatsReport>(message)) {
     return;
   }
   on_bad_bytes(Error(proto::WireError::kBadType,
                      fmt::format("a {} while {}", proto::message_name(message), name(state_))),
                now);
+}
+
+void Session::on_restart_request(const proto::RestartRequest& request) {
+  restart_ = fmt::format("frame {}: {}", value(request.frame), request.text);
+  ++counts_.restarts;
+}
+
+std::optional<std::string> Session::take_restart_request(Time now) {
+  if (!restart_ || (last_restart_ && now - *last_restart_ < kRestartSpacing)) return std::nullopt;
+  last_restart_ = now;
+  return std::exchange(restart_, std::nullopt);
 }
 
 void Session::on_hello(const proto::ClientHello& hello) {
@@ -117,11 +132,16 @@ void Session::on_bad_bytes(const Error& error, Time now) {
 
 void Session::accept(proto::StreamDescription stream, Time now) {
   AW_ASSERT(state_ == SessionState::kHelloReceived);
-  const std::array meta_codecs{stream.meta_codec, static_cast<std::uint32_t>(codec::MetaCodecKind::kPlain)};
+  // The stream's own, then those that every stream can give, the best first.
+  std::vector<std::uint32_t> meta_codecs{stream.meta_codec};
+  for (const codec::MetaCodecKind kind : codec::kMetaCodecs) {
+    if (!leaves_positions(kind)) meta_codecs.push_back(static_cast<std::uint32_t>(kind));
+  }
   const auto terms = proto::agree(hello_, meta_codecs, stream.picture);
   if (!terms) return refuse(proto::refusal_for(terms.error()), now);
   stream.meta_codec = terms->meta_codec;
   meta_codec_ = static_cast<codec::MetaCodecKind>(terms->meta_codec);
+  if (!leaves_positions(meta_codec_)) stream.memory.reset();
   stream.ssrc = keys_.ssrc;
   reader_.set_limit(proto::kMaxEnvelope);
   reliable_.push(proto::ServerHello{terms->version, keys_.id, keys_.token, std::move(stream)}, now);

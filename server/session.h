@@ -51,6 +51,7 @@ struct SessionCounts {
   std::uint64_t video_bytes = 0;     ///< access units
   std::uint64_t meta_bytes = 0;
   std::uint64_t picture_losses = 0;     ///< PLIs
+  std::uint64_t restarts = 0;           ///< asked for
   std::uint64_t ignored_datagrams = 0;  ///< malformed, unproven or none of a client's business
 };
 
@@ -75,7 +76,8 @@ class Session {
   /// In kHelloReceived: what the client asked for.
   [[nodiscard]] const proto::ClientHello& hello() const { return hello_; }
   /// Answers the hello: with a ServerHello, or a refusal when client and stream do not fit. Meta updates will
-  /// be in the stream's `meta_codec` if the client knows it, else in the plain form.
+  /// be in the stream's `meta_codec` if the client knows it, else in the best form that says where blocks
+  /// lie.
   void accept(proto::StreamDescription stream, Time now);
   void refuse(const proto::Refusal& refusal, Time now);
   /// After accept(): the form that was agreed on.
@@ -106,6 +108,8 @@ class Session {
   [[nodiscard]] bool is_congested() const { return reliable_.is_over() || media_.is_congested(); }
   /// True once after the client lost a picture.
   bool take_refresh_request() { return std::exchange(refresh_, false); }
+  /// Why the client asks to be told all anew; once a request, and at most once a second: later then.
+  std::optional<std::string> take_restart_request(Time now);
   [[nodiscard]] const std::optional<proto::ReceivedPose>& newest_pose() const { return poses_.newest(); }
   /// By RTCP; 0 before the first report.
   [[nodiscard]] Duration round_trip() const { return round_trip_; }
@@ -127,6 +131,7 @@ class Session {
   [[nodiscard]] bool is_open() const;
   void on_message(const proto::Message& message, Time now);
   void on_hello(const proto::ClientHello& hello);
+  void on_restart_request(const proto::RestartRequest& request);
   void on_bad_bytes(const Error& error, Time now);
   bool on_probe(const proto::PeerAddress& from, ByteView datagram, Time now);
   bool on_confirm(const proto::PeerAddress& from, ByteView datagram, Time now);
@@ -158,6 +163,8 @@ class Session {
   std::deque<Control> control_;  ///< challenges and sync answers
   ByteBuffer leaving_;           ///< what the last OutgoingDatagram borrowed
   bool refresh_ = false;
+  std::optional<std::string> restart_;
+  std::optional<Time> last_restart_;
   Duration round_trip_{};
   double loss_ = 0;
   SessionCounts counts_;

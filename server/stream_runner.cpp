@@ -47,6 +47,11 @@ void StreamRunner::request_refresh() {
   refresh_ = true;
 }
 
+void StreamRunner::request_restart() {
+  const std::lock_guard lock(mutex_);
+  restart_ = true;
+}
+
 void StreamRunner::set_paused(bool paused) {
   {
     const std::lock_guard lock(mutex_);
@@ -104,7 +109,7 @@ ViewRequest StreamRunner::make_request() {
   request.pose_received = view_->received;
   request.cover = cover_.cover();
   request.refresh = std::exchange(refresh_, false);
-  request.restart = std::exchange(first_, false);
+  request.restart = std::exchange(restart_, false);
   request.meta_codec = settings_.meta_codec;
   request.bit_rate = rate_.take();
   return request;

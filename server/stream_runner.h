@@ -53,6 +53,8 @@ class StreamRunner {
   /// The newest pose; without one nothing is rendered.
   void set_view(const StampedPose& pose, Time received, Duration round_trip);
   void request_refresh();
+  /// The client knows nothing any more, or something wrong: the next frame tells all.
+  void request_restart();
   /// Frames stop being started while paused.
   void set_paused(bool paused);
   void frame_taken();
@@ -83,7 +85,7 @@ class StreamRunner {
   std::optional<View> view_;
   bool paused_ = false;
   bool refresh_ = false;
-  bool first_ = true;
+  bool restart_ = true;
   bool failed_ = false;
   bool rendering_over_ = false;
   std::uint32_t in_encoder_ = 0;  ///< rendered and not yet encoded

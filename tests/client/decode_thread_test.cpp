@@ -20,13 +20,17 @@ struct DecodeThreadTest : ::testing::Test {
   HandOver<Pair> pairs;
   int idrs_wanted = 0;
   std::string broken;
+  std::vector<FrameId> restarts;
 
   DecodeCounts run(std::vector<Arrival> input) {
     for (Arrival& a : input) EXPECT_TRUE(arrivals.try_push(std::move(a)));
     arrivals.close();
-    DecodeThread decoder(square_stream(), {}, arrivals, pairs,
+    proto::StreamDescription stream = square_stream();
+    stream.meta_codec = static_cast<std::uint32_t>(server.meta_codec());
+    DecodeThread decoder(stream, {}, arrivals, pairs,
                          {.decode_failed = [this] { ++idrs_wanted; },
-                          .peer_broke = [this](std::string why) { broken = std::move(why); }});
+                          .peer_broke = [this](std::string why) { broken = std::move(why); },
+                          .out_of_step = [this](FrameId f, const std::string&) { restarts.push_back(f); }});
     decoder.finish();
     return decoder.counts();
   }
@@ -92,6 +96,51 @@ TEST_F(DecodeThreadTest, EndsTheSessionWhenAnUpdateContradictsTheReplica) {
   run(list(std::move(first), server.picture(0, 90, true), std::move(twice), server.picture(1, 90, false)));
   EXPECT_THAT(broken, HasSubstr("already"));
   EXPECT_EQ(pairs.take()->times.frame, FrameId{0}) << "the last good pair stays";
+}
+
+/// The same with a meta codec that keeps state.
+struct OutOfStepTest : DecodeThreadTest {
+  OutOfStepTest() { server = SquareServer(codec::MetaCodecKind::kGate); }
+  Arrival bent(std::uint32_t n) {
+    Arrival update = server.update(n, false);
+    for (std::byte& octet : update.update->update.meta.meta) octet ^= std::byte{0x10};
+    update.update->update.meta.meta[0] ^= std::byte{0x10};
+    return update;
+  }
+};
+
+TEST_F(OutOfStepTest, AsksOnceAndGoesOnFromTheRestart) {
+  std::vector<Arrival> input;
+  for (std::uint32_t n = 0; n < 5; ++n) {
+    const bool restart = n == 0 || n == 3;
+    input.push_back(n == 1 ? bent(n) : server.update(n, restart));
+    input.push_back(server.picture(n, static_cast<std::uint8_t>(90 + n), restart));
+  }
+  const DecodeCounts c = run(std::move(input));
+  EXPECT_EQ(restarts, std::vector<FrameId>{FrameId{1}});
+  EXPECT_EQ(broken, "");
+  EXPECT_EQ(c.restarts, 1U);
+  EXPECT_EQ(c.pairing.paired, 3U) << "0, 3 and 4: what lies between is not shown";
+  EXPECT_EQ(pairs.take()->times.frame, FrameId{4});
+}
+
+TEST_F(OutOfStepTest, KeepsTheLastGoodPairMeanwhile) {
+  std::vector<Arrival> input = list(server.update(0, true), server.picture(0, 90, true));
+  input.push_back(bent(1));
+  input.push_back(server.picture(1, 100, false));
+  run(std::move(input));
+  EXPECT_EQ(pairs.take()->times.frame, FrameId{0});
+}
+
+TEST_F(OutOfStepTest, GivesUpOnAServerThatRestartsInVain) {
+  std::vector<Arrival> input;
+  for (std::uint32_t n = 0; n < 20; n += 2) {
+    input.push_back(server.update(n, true));
+    input.push_back(bent(n + 1));
+  }
+  run(std::move(input));
+  EXPECT_EQ(restarts.size(), 4U);
+  EXPECT_THAT(broken, HasSubstr("meta update 9"));
 }
 
 TEST_F(DecodeThreadTest, EndsTheSessionWhenFrameNumbersDisagree) {

@@ -26,8 +26,9 @@ class DisplayLoopTest : public render::test::GpuTest {
     arrivals.try_push(server.picture(0, luma, true));
     arrivals.close();
     HandOver<Pair> made;
-    DecodeThread decoder(square_stream(), {}, arrivals, made,
-                         {.decode_failed = [] {}, .peer_broke = [](auto) {}});
+    DecodeThread decoder(
+        square_stream(), {}, arrivals, made,
+        {.decode_failed = [] {}, .peer_broke = [](auto) {}, .out_of_step = [](auto, auto) {}});
     decoder.finish();
     return made.take().value();
   }

@@ -39,6 +39,7 @@ class FakeServer {
   bool proven = false;
   std::vector<StampedPose> poses;  ///< newest of each packet
   std::vector<proto::StatsReport> reports;
+  std::vector<proto::RestartRequest> restarts;
   std::optional<proto::Goodbye> goodbye;
   int refresh_requests = 0;
   int receiver_reports = 0;
@@ -130,6 +131,7 @@ class FakeServer {
       if (answers) send(answer);
     }
     if (const auto* r = std::get_if<proto::StatsReport>(&message)) reports.push_back(*r);
+    if (const auto* r = std::get_if<proto::RestartRequest>(&message)) restarts.push_back(*r);
     if (const auto* g = std::get_if<proto::Goodbye>(&message)) goodbye = *g;
   }
 

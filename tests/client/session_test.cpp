@@ -126,6 +126,17 @@ TEST(Session, AsksForAnIdrWhenTheDecoderFails) {
   EXPECT_GE(w.server.refresh_requests, 1);
 }
 
+TEST(Session, AsksToBeToldAllAnew) {
+  World w;
+  w.session.request_restart(FrameId{1}, "too early");
+  w.run(milliseconds(200));
+  w.session.request_restart(FrameId{8}, "out of step");
+  w.run(milliseconds(50));
+  ASSERT_EQ(w.server.restarts.size(), 1U);
+  EXPECT_EQ(w.server.restarts[0].frame, FrameId{8});
+  EXPECT_EQ(w.server.restarts[0].text, "out of step");
+}
+
 TEST(Session, ReportsReceptionAndProgressEachSecond) {
   World w;
   w.run(milliseconds(200));

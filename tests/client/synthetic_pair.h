@@ -47,13 +47,16 @@ inline codec::MetaUpdate square_update(FrameId frame, bool first) {
 /// Makes what the network thread would hand over, one frame after the other.
 class SquareServer {
  public:
-  SquareServer() {
+  explicit SquareServer(codec::MetaCodecKind kind = codec::MetaCodecKind::kPlain)
+      : kind_(kind), meta_(codec::make_meta_encoder(kind, square_limits())) {
     codec::VideoEncoderSettings settings;
     settings.extent = {64, 64};
     settings.encoder = "libx264";
     settings.intra_interval = 0;
     video_ = std::make_unique<codec::VideoEncoder>(settings);
   }
+
+  [[nodiscard]] codec::MetaCodecKind meta_codec() const { return kind_; }
 
   /// A picture of one luma value: grey.
   Arrival picture(std::uint32_t n, std::uint8_t luma, bool idr) {
@@ -85,9 +88,9 @@ class SquareServer {
   }
 
  private:
+  codec::MetaCodecKind kind_;
   std::unique_ptr<codec::VideoEncoder> video_;
-  std::unique_ptr<codec::MetaEncoder> meta_ =
-      codec::make_meta_encoder(codec::MetaCodecKind::kPlain, square_limits());
+  std::unique_ptr<codec::MetaEncoder> meta_;
 };
 
 }  // namespace atlaswire::client::testing

@@ -182,6 +182,44 @@ TEST(GateMetaRoundTrip, ForgetsWhatWasHiddenLong) {
   }
 }
 
+/// Blocks as sizes that are asked for, and a cue.
+MetaUpdate asked(MetaUpdate update, std::uint32_t frame) {
+  for (AddedPatch& patch : update.added) patch.block.x = patch.block.y = 0;
+  for (MovedPatch& patch : update.moved) patch.block.x = patch.block.y = 0;
+  update.cue = LayoutCue{.reset = frame % 9 == 0, .check = static_cast<std::uint16_t>(frame * 40'503)};
+  return update;
+}
+
+TEST(GateMetaRoundTrip, LeavesPositionsToTheReceiver) {
+  SceneWalk walk(2);
+  GateMetaEncoder encoder(walk.limits(), BlockPositions::kDerived);
+  GateMetaEncoder with_positions(walk.limits());
+  GateMetaDecoder decoder(walk.limits(), BlockPositions::kDerived);
+  ShownPatches wanted;
+  ShownPatches got;
+  std::size_t bytes = 0;
+  std::size_t bytes_with_positions = 0;
+  for (std::uint32_t frame = 0; frame < 60; ++frame) {
+    const MetaUpdate update = walk.next(frame == 40);
+    const MetaUpdate cued = asked(update, frame);
+    ByteBuffer message;
+    with_positions.encode(update, message);
+    bytes_with_positions += message.size();
+    message.clear();
+    encoder.encode(cued, message);
+    bytes += message.size();
+    const auto back = decoder.decode(message);
+    ASSERT_TRUE(back) << back.error().message();
+    ASSERT_TRUE(back->cue);
+    EXPECT_EQ(back->cue->reset, cued.cue->reset);
+    EXPECT_EQ(back->cue->check, cued.cue->check);
+    wanted.apply(cued);
+    got.apply(*back);
+    ASSERT_TRUE(wanted == got) << frame;
+  }
+  EXPECT_LT(bytes * 3, bytes_with_positions * 2);
+}
+
 TEST(GateMetaDecode, NoticesALostUpdate) {
   SceneWalk walk(6);
   Stream stream(walk.limits());
@@ -213,6 +251,9 @@ TEST(GateMetaDecode, RefusesOtherForms) {
   EXPECT_EQ(refusal(decoder.decode({})), MetaError::kTruncated);
   EXPECT_EQ(refusal(decoder.decode(ByteBuffer(1, std::byte{0xA1}))), MetaError::kBadVersion);
   EXPECT_EQ(refusal(decoder.decode(ByteBuffer(kMaxMetaBody + 1))), MetaError::kTooLarge);
+  EXPECT_EQ(refusal(decoder.decode(ByteBuffer(1, std::byte{0xA5}))), MetaError::kBadVersion);
+  GateMetaDecoder derives(test_limits(), BlockPositions::kDerived);
+  EXPECT_EQ(refusal(derives.decode(ByteBuffer(1, std::byte{0xA3}))), MetaError::kBadVersion);
 }
 
 TEST(GateMetaDecode, RefusesWhatFollowsTheEnd) {

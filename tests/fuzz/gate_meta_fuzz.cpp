@@ -16,7 +16,7 @@ constexpr std::uint32_t kSide = 6;  // of a scene so small that its state is rea
 GateMetaDecoder walked(std::uint32_t frames) {
   SceneWalk walk(1, kSide);
   GateMetaEncoder encoder(walk.limits());
-  GateMetaDecoder decoder(walk.limits(), true);
+  GateMetaDecoder decoder(walk.limits(), BlockPositions::kSent, true);
   ByteBuffer bytes;
   for (std::uint32_t frame = 0; frame < frames; ++frame) {
     bytes.clear();

@@ -58,6 +58,7 @@ ServerHello answer() {
   m.stream.ssrc = 0xDEADBEEF;
   m.stream.background = {0.25F, 0.5F, 4.0F};
   m.stream.alpha_mask = true;
+  m.stream.memory = AtlasMemory{7, 1, 0.9};
   return m;
 }
 
@@ -102,6 +103,7 @@ TEST(Messages, ServerHelloComesBackAsSent) {
   EXPECT_EQ(m.stream.ssrc, 0xDEADBEEF);
   EXPECT_EQ(m.stream.payload_type, 96);
   EXPECT_EQ(m.stream.background, (std::array<float, 3>{0.25F, 0.5F, 4.0F}));
+  EXPECT_EQ(m.stream.memory, (AtlasMemory{7, 1, 0.9}));
   EXPECT_TRUE(m.stream.alpha_mask);
   EXPECT_FALSE(m.stream.alpha_blend);
   EXPECT_FALSE(m.stream.double_sided);
@@ -140,6 +142,15 @@ TEST(Messages, TheOthersComeBackAsSent) {
   EXPECT_EQ(stats.frames_displayed, 6U);
   EXPECT_EQ(stats.display_rate, 59.5);
   EXPECT_EQ(stats.motion_to_photon, 86ms);
+  const RestartRequest restart = round_trip_of(RestartRequest{FrameId{12}, "lost"});
+  EXPECT_EQ(restart.frame, FrameId{12});
+  EXPECT_EQ(restart.text, "lost");
+}
+
+TEST(Messages, AStreamMayHaveNoMemory) {
+  ServerHello m = answer();
+  m.stream.memory.reset();
+  EXPECT_FALSE(round_trip_of(m).stream.memory);
 }
 
 TEST(Messages, TextsAreMadeSendable) {
@@ -245,6 +256,12 @@ TEST(ParseEnvelope, RefusesBadServerHellos) {
   check("stream.grid_step", [](auto& m) { m.mutable_stream()->set_grid_step(kInf); });
   check("stream.grid_bits", [](auto& m) { m.mutable_stream()->set_grid_bits(21); });
   check("stream.meta_codec", [](auto& m) { m.mutable_stream()->set_meta_codec(0); });
+  const auto memory = [](auto& m) { return m.mutable_stream()->mutable_memory(); };
+  check("stream.memory.superblock_log2", [&](auto& m) { memory(m)->set_superblock_log2(3); });
+  check("stream.memory.superblock_log2", [&](auto& m) { memory(m)->set_superblock_log2(13); });
+  check("stream.memory.superblock_log2", [&](auto& m) { memory(m)->set_superblock_log2(11); });
+  check("stream.memory.min_block_log2", [&](auto& m) { memory(m)->set_min_block_log2(8); });
+  check("stream.memory.high_water", [&](auto& m) { memory(m)->set_high_water(kNaN); });
   check("stream.max_vertices", [](auto& m) { m.mutable_stream()->set_max_vertices(0xFFFFFFFF); });
   check("stream.max_patches", [](auto& m) { m.mutable_stream()->set_max_patches(0); });
   check("stream.payload_type", [](auto& m) { m.mutable_stream()->set_payload_type(72); });

@@ -19,6 +19,7 @@ class FakeStream final : public FrameMaker {
     std::atomic<std::uint32_t> rendered{0};
     std::atomic<std::uint32_t> encoded{0};
     std::atomic<std::uint32_t> intra{0};
+    std::atomic<std::uint32_t> restarts{0};
     std::atomic<bool> order_broken{false};
     std::atomic<double> eye_separation{0};  ///< that the last frame was asked for
     std::atomic<std::uint32_t> fail_render_at{~0U};
@@ -39,6 +40,7 @@ class FakeStream final : public FrameMaker {
     watch_.eye_separation = request.hints.eye_separation;
     ++watch_.rendered;
     if (prepared.intra) ++watch_.intra;
+    if (request.restart) ++watch_.restarts;
     return prepared;
   }
 

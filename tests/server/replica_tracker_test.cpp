@@ -72,6 +72,36 @@ TEST(ReplicaTracker, RestartTellsEverythingAgain) {
   EXPECT_THAT(ids(tracker.update(FrameId{2}, change).vertices), ElementsAre(0)) << "the client forgot it";
 }
 
+TEST(ReplicaTracker, TellsWhatPatchesAskForInsteadOfWhatTheyGot) {
+  ReplicaTracker tracker(two_patches(), 16);
+  render::LayoutChange change{.reset = true};
+  std::vector<render::BlockRequest> requests{{PatchId{0}, 4, 2, true}, {PatchId{1}, 3, 3, false}};
+  std::vector<render::PlacedPatch> live{{PatchId{0}, {0, 0, 4, 2, true}}};  // no room for the other
+  const auto all = tracker.restart(FrameId{0}, {requests, &change, live});
+  EXPECT_TRUE(all.reset);
+  ASSERT_TRUE(all.cue);
+  EXPECT_TRUE(all.cue->reset);
+  ASSERT_EQ(all.added.size(), 2U);
+  EXPECT_EQ(all.added[0].block, (Block{0, 0, 4, 2, true}));
+  EXPECT_EQ(all.added[1].block, (Block{0, 0, 3, 3, false}));
+
+  change = {.added = {{PatchId{1}, {16, 0, 3, 3, false}}}, .removed = {PatchId{0}}};
+  requests = {{PatchId{1}, 3, 3, false}};
+  const auto gone = tracker.update(FrameId{1}, {requests, &change, {}});
+  EXPECT_THAT(gone.removed, ElementsAre(PatchId{0}));
+  EXPECT_TRUE(gone.added.empty()) << "it asked before; that it has a block now is the receiver's to know";
+  EXPECT_FALSE(gone.cue->reset);
+  EXPECT_NE(gone.cue->check, all.cue->check);
+
+  requests = {{PatchId{0}, 1, 1, false}, {PatchId{1}, 3, 2, false}};
+  const auto third = tracker.update(FrameId{2}, {requests, &change, {}});
+  EXPECT_TRUE(third.vertices.empty());
+  ASSERT_EQ(third.added.size(), 1U);
+  ASSERT_EQ(third.moved.size(), 1U);
+  EXPECT_EQ(third.moved[0].id, PatchId{1});
+  EXPECT_EQ(third.moved[0].block, (Block{0, 0, 3, 2, false}));
+}
+
 TEST(ReplicaTracker, PositionsAreSceneCoordinatesWithinTheGridsError) {
   const auto scene = two_patches();
   ReplicaTracker tracker(scene, 12);

@@ -28,8 +28,9 @@ TEST_F(SessionHandshake, AnswersAHelloWithTheStreamAndItsKeys) {
 
 TEST_F(SessionHandshake, AgreesOnTheBestFormOfMetaUpdatesThatBothKnow) {
   proto::StreamDescription offered = stream();
-  offered.meta_codec = static_cast<std::uint32_t>(codec::MetaCodecKind::kGate);
-  for (const std::vector<std::uint32_t>& known : {std::vector<std::uint32_t>{1, 2}, {1}}) {
+  offered.meta_codec = static_cast<std::uint32_t>(codec::MetaCodecKind::kMirror);
+  offered.memory.emplace();
+  for (const std::vector<std::uint32_t>& known : {std::vector<std::uint32_t>{1, 2, 4}, {1, 2}, {1}}) {
     start();
     proto::ClientHello client;
     client.meta_codecs = known;
@@ -37,8 +38,10 @@ TEST_F(SessionHandshake, AgreesOnTheBestFormOfMetaUpdatesThatBothKnow) {
     session->accept(offered, now);
     const auto answer = replies();
     ASSERT_EQ(answer.size(), 1U);
-    EXPECT_EQ(std::get<proto::ServerHello>(answer[0]).stream.meta_codec, known.back());
+    const auto& info = std::get<proto::ServerHello>(answer[0]).stream;
+    EXPECT_EQ(info.meta_codec, known.back());
     EXPECT_EQ(static_cast<std::uint32_t>(session->meta_codec()), known.back());
+    EXPECT_EQ(info.memory.has_value(), known.back() == 4) << "only who mirrors it needs it";
   }
 }
 
@@ -347,6 +350,19 @@ TEST_F(SessionEnd, ReasonsAreMadeFitForTheWire) {
   const auto last = replies();
   ASSERT_EQ(last.size(), 1U) << "the client's parser takes it";
   EXPECT_THAT(std::get<proto::Goodbye>(last[0]).text, HasSubstr("two lines,  , ?xxx"));
+}
+
+TEST_F(SessionFeedback, PassesOnAtMostOneRestartASecond) {
+  stream_to(home);
+  EXPECT_FALSE(session->take_restart_request(now));
+  feed(proto::RestartRequest{FrameId{9}, "bent"});
+  feed(proto::RestartRequest{FrameId{10}, "bent still"});
+  EXPECT_EQ(session->take_restart_request(now), "frame 10: bent still");
+  EXPECT_FALSE(session->take_restart_request(now));
+  feed(proto::RestartRequest{FrameId{11}, "again"});
+  EXPECT_FALSE(session->take_restart_request(now + 999ms));
+  EXPECT_EQ(session->take_restart_request(now + 1s), "frame 11: again") << "late, not never";
+  EXPECT_EQ(session->counts().restarts, 3U);
 }
 
 TEST_F(SessionEnd, ServerMessagesFromAClientBreakTheProtocol) {

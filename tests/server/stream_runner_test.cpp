@@ -124,6 +124,17 @@ TEST_F(StreamRunnerTest, RefreshReachesTheStream) {
   EXPECT_GT(source.watch.intra, before);
 }
 
+TEST_F(StreamRunnerTest, RestartReachesTheStreamOnce) {
+  start();
+  pose(1);
+  ASSERT_TRUE(wait([&] { return frames.size() >= 3; }));
+  EXPECT_EQ(source.watch.restarts, 1U) << "the first frame";
+  runner->request_restart();
+  const auto rendered = source.watch.rendered.load();
+  ASSERT_TRUE(wait([&] { return source.watch.rendered > rendered + 3; }));
+  EXPECT_EQ(source.watch.restarts, 2U);
+}
+
 TEST_F(StreamRunnerTest, AFailedDeviceEndsTheStreamOnce) {
   source.watch.fail_render_at = 3;
   start();
