@@ -28,8 +28,11 @@ server::PreparedFrame ViewStream::render(const server::ViewRequest& request) {
   prepared.bit_rate = request.bit_rate;
   prepared.stamps.pose_received = request.pose_received;
   prepared.intra = schedule_.next();
-  prepared.rendered =
-      method_->render({next_frame_, request.camera, request.cover, prepared.intra, request.hints});
+  prepared.rendered = method_->render({.frame = next_frame_,
+                                       .camera = request.camera,
+                                       .cover = request.cover,
+                                       .intra = prepared.intra,
+                                       .hints = request.hints});
   if (const std::span<const float> depth = prepared.rendered.view->depth; !depth.empty()) {
     depths_.insert_or_assign(next_frame_, std::vector<float>(depth.begin(), depth.end()));
   }
