@@ -6,6 +6,7 @@
 #include "lab/point.h"
 #include "lab/point_result.h"
 #include "lab/rate_budget.h"
+#include "lab/work.h"
 #include "server/encoded_frame.h"
 
 #include <cstdint>
@@ -34,9 +35,11 @@ class FrameSource {
   server::EncodedFrame make(PoseId id, const Pose& head, const FrameTiming& timing, bool refresh);
 
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  /// What all of them took to make.
+  [[nodiscard]] const Work& work() const { return making_; }
   /// Bytes, texels and memory over `streamed`: `video_mbps`, `meta_mbps`, ...
   void add_figures(Duration streamed, std::vector<Figure>& figures) const;
-  /// Means over frames in milliseconds: `server_ms` and its parts.
+  /// Means over frames in milliseconds: `server_frame_ms` with its parts, and `server_cpu_ms`.
   void add_timings(std::vector<Figure>& timings) const;
 
  private:
@@ -60,8 +63,8 @@ class FrameSource {
   double bias_ = 0;
   double used_share_ = 0;
   render::RenderTimings render_;
-  Duration making_{};
-  Duration encoding_{};
+  Work making_;
+  Duration encoding_{};  ///< of it
 };
 
 }  // namespace atlaswire::lab

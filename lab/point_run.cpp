@@ -8,6 +8,7 @@
 #include "lab/meter.h"
 #include "lab/session_carrier.h"
 #include "lab/truth.h"
+#include "lab/work.h"
 #include "render/gpu/device.h"
 #include "render/scene/load.h"
 
@@ -78,13 +79,14 @@ class PointRun {
   }
 
   void advance(Duration now) {
+    const Work start = work_now();
+    const Work made = source_.work();
     carrier_->advance(now);
-    const Time start = steady_now();
     if (const auto frame = contender_->show_newest()) {
       on_display_ = frame;
       shown_since_ = now;
     }
-    showing_ += steady_now() - start;
+    receiving_ += (work_now() - start) - (source_.work() - made);
     longest_still_ = std::max(longest_still_, now - shown_since_);
   }
 
@@ -94,9 +96,9 @@ class PointRun {
     if (settings_.stereo) eye.pose = render::eye_pose(eye.pose, -settings_.ipd / 2);
     Displayed shown{.truth = truth_.picture(eye), .view = render::Picture(eye.extent, {0, 0, 0, 0})};
     if (on_display_) {
-      const Time start = steady_now();
+      const Work start = work_now();
       shown.view = contender_->draw(eye);
-      drawing_ += steady_now() - start;
+      drawing_ += work_now() - start;
       ++draws_;
     }
     return shown;
@@ -112,8 +114,10 @@ class PointRun {
     const auto per = [](Duration sum, std::uint64_t count) {
       return count == 0 ? kNotApplicable : to_ms(sum) / static_cast<double>(count);
     };
-    result.timings.push_back({"client_show_ms", per(showing_, source_.frames())});
-    result.timings.push_back({"client_draw_ms", per(drawing_, draws_)});
+    result.timings.push_back({"client_receive_ms", per(receiving_.wall, source_.frames())});
+    result.timings.push_back({"client_receive_cpu_ms", per(receiving_.cpu, source_.frames())});
+    result.timings.push_back({"client_draw_ms", per(drawing_.wall, draws_)});
+    result.timings.push_back({"client_draw_cpu_ms", per(drawing_.cpu, draws_)});
     result.frames = meter_.rows();
     return result;
   }
@@ -132,8 +136,8 @@ class PointRun {
   std::optional<FrameId> on_display_;
   Duration shown_since_{};    ///< of what is on display
   Duration longest_still_{};  ///< without a newer frame
-  Duration showing_{};
-  Duration drawing_{};
+  Work receiving_;            ///< decoding and showing, and the network's model with a profile
+  Work drawing_;
   std::uint64_t draws_ = 0;
 };
 

@@ -111,6 +111,7 @@ def bars(points, plot, ys):
                               color=COLOURS[index % len(COLOURS)], label=name)
             axes.bar_label(drawn, fmt="%.4g", padding=3, fontsize=8)
     axes.set_yticks(range(len(groups)), groups)
+    axes.xaxis.set_major_locator(ticker.MaxNLocator(5))
     axes.invert_yaxis()
     axes.grid(False, axis="y")
     finish(figure, axes, plot, "")
