@@ -84,13 +84,17 @@ bool Animator::deforms(std::uint32_t instance) const {
   return rig_->instances[instance].skin >= 0 || !rig_->meshes[mesh].morphs.empty();
 }
 
+glm::dvec3 Animator::pivot(std::uint32_t instance) const {
+  return glm::dvec3(rest_to_scene_[rig_->instances[instance].node][3]);
+}
+
 std::optional<Pose> Animator::rigid_motion(std::uint32_t instance) const {
   if (deforms(instance)) return std::nullopt;
   const std::uint32_t n = rig_->instances[instance].node;
   Pose motion;
   if (to_scene_[n] == rest_to_scene_[n]) return motion;
   const glm::dmat4 moved = to_scene_[n] * glm::inverse(rest_to_scene_[n]);
-  motion.position = glm::dvec3(moved[3]);
+  motion.position = glm::dvec3(to_scene_[n][3] - rest_to_scene_[n][3]);
   const glm::dmat3 turned(moved);
   motion.orientation = glm::normalize(glm::quat_cast(turned));
   const glm::dmat3 left = turned - glm::mat3_cast(motion.orientation);

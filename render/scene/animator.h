@@ -26,8 +26,11 @@ class Animator {
   [[nodiscard]] const glm::dmat4& node(std::uint32_t number) const { return to_scene_[number]; }
   /// Whether a skin or morph targets deform an instance.
   [[nodiscard]] bool deforms(std::uint32_t instance) const;
-  /// How an instance that nothing deforms has moved from its rest: scene = orientation * rest + position.
-  /// nullopt: it is deformed, or what moved it there is more than a rotation and a translation.
+  /// Where an instance's node has its origin at rest: what rigid motions turn about.
+  [[nodiscard]] glm::dvec3 pivot(std::uint32_t instance) const;
+  /// How an instance that nothing deforms has moved from its rest: scene = orientation * (rest - pivot) +
+  /// pivot + position. nullopt: it is deformed, or what moved it there is more than a rotation and a
+  /// translation.
   [[nodiscard]] std::optional<Pose> rigid_motion(std::uint32_t instance) const;
   /// Where an instance's vertices are in the scene, metres: one for each of its mesh's. Morphing comes before
   /// skinning; a skinned instance ignores its own node (glTF 2.0, 3.7.3.1).

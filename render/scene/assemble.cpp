@@ -121,6 +121,14 @@ SceneRequirements require(const Scene& scene, std::uint32_t degenerate, std::uin
   return r;
 }
 
+void count_motion(const SceneSource& source, SceneRequirements& r) {
+  r.clips = static_cast<std::uint32_t>(source.rig.clips.size());
+  for (std::size_t i = 0; i < source.rig.instances.size(); ++i) {
+    if (source.rig.instances[i].skin >= 0) ++r.skinned_instances;
+    if (!source.rig.meshes[source.instances[i].mesh].morphs.empty()) ++r.morphed_instances;
+  }
+}
+
 }  // namespace
 
 Result<Scene> assemble(SceneSource source, const AssembleSettings& settings) {
@@ -159,6 +167,7 @@ Result<Scene> assemble(SceneSource source, const AssembleSettings& settings) {
   list_chunks(ordered, scene);
   list_lights(scene);
   scene.requirements = require(scene, flat.degenerate_triangles, split);
+  count_motion(source, scene.requirements);
   return scene;
 }
 

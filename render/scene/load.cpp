@@ -1,5 +1,6 @@
 #include "render/scene/load.h"
 
+#include "base/log.h"
 #include "render/scene/atrium.h"
 #include "render/scene/gltf.h"
 #include "render/scene/scene_error.h"
@@ -22,6 +23,7 @@ Result<Scene> load_scene(const std::string& name_or_file, const AssembleSettings
   }
   auto source = read_gltf(name_or_file);
   if (source.has_error()) return source.error();
+  if (source->rig.moves()) spdlog::warn("{} moves, and is shown at rest", source->name);
   return assemble(std::move(*source), settings);
 }
 

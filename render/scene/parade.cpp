@@ -23,7 +23,7 @@ constexpr int kKeys = 24 * static_cast<int>(kSeconds);
 
 enum Look : std::uint16_t { kFloor, kSkin, kCloth, kSolid };
 
-/// A part of the figure about a joint, which swings about x once a second.
+/// A part of the figure about a joint, which swings about x once a stride.
 struct Bone {
   int parent;
   glm::vec3 joint;  ///< at rest, the figure at the origin
@@ -104,7 +104,7 @@ class Builder {
   void build(const ParadeOptions& options) {
     add_looks();
     place(box({-6, -0.1F, -6}, {6, 0, 6}, 1.0F, 1.0F), kFloor, add_node(-1, glm::dvec3(0.0)));
-    for (std::uint32_t i = 0; i < options.figures; ++i) add_figure(kTau * i / options.figures);
+    for (std::uint32_t i = 0; i < options.figures; ++i) add_figure(i);
     for (std::uint32_t i = 0; i < options.cloths; ++i) add_cloth(i);
     for (std::uint32_t i = 0; i < options.orbiters; ++i) add_orbiter(i);
     for (std::uint32_t i = 0; i < rig_.nodes.size(); ++i) rig_.order.push_back(i);
@@ -169,14 +169,13 @@ class Builder {
   }
 
   /// Once around the middle in a clip, by a spline through 16 points with their true tangents.
-  void add_way(std::uint32_t node, double start) {
-    constexpr double kRadius = 2.0;
+  void add_way(std::uint32_t node, double radius, double start) {
     const auto angle = [start](double t) { return start + kTau * t / kSeconds; };
     add_channel(node, RigChannel::Path::kTranslation, 16, [&](double t) {
-      const double speed = kTau / kSeconds * kRadius;
+      const double speed = kTau / kSeconds * radius;
       const glm::dvec3 along(-speed * std::sin(angle(t)), 0, -speed * std::cos(angle(t)));
       return std::vector<double>{
-          along.x, 0, along.z, kRadius * std::cos(angle(t)), 0, -kRadius * std::sin(angle(t)),
+          along.x, 0, along.z, radius * std::cos(angle(t)), 0, -radius * std::sin(angle(t)),
           along.x, 0, along.z};
     });
     RigChannel& way = rig_.clips[0].channels.back();
@@ -186,8 +185,12 @@ class Builder {
     add_rotation(node, 32, {0, 1, 0}, [&](double t) { return angle(t) + kTau / 2; });
   }
 
-  void add_figure(double start) {
-    const std::uint32_t figure = add_node(-1, glm::dvec3(2.0 * std::cos(start), 0.0, -2.0 * std::sin(start)));
+  /// Each with its own pace and way, so that no two move alike.
+  void add_figure(std::uint32_t number) {
+    const double radius = 1.6 + 0.7 * (number % 5) + 0.03 * number;
+    const double start = 2.4 * number;
+    const double strides = (7.0 + number % 4) / kSeconds;  // a second
+    const std::uint32_t figure = add_node(-1, radius * glm::dvec3(std::cos(start), 0.0, -std::sin(start)));
     RigSkin skin;
     SourceMesh mesh;
     RigMesh rig;
@@ -200,18 +203,18 @@ class Builder {
       const std::uint32_t node = add_node(static_cast<std::int32_t>(above), glm::dvec3(bone.joint - from));
       skin.joints.push_back(node);
       skin.inverse_bind.push_back(glm::translate(glm::dmat4(1.0), -glm::dvec3(bone.joint)));
-      add_rotation(node, kKeys, {1, 0, 0}, [&bone](double t) {
-        const double phase = kTau * (t + bone.phase);
+      add_rotation(node, kKeys, {1, 0, 0}, [&bone, strides](double t) {
+        const double phase = kTau * (strides * t + bone.phase);
         return bone.swing * std::sin(phase) + bone.bend * (0.5 - 0.5 * std::cos(phase));
       });
       SourceMesh part = limb(bone);
       for (const SourceVertex& v : part.vertices) bind(b, v.position, rig);
       append(mesh, part);
     }
-    add_channel(first, RigChannel::Path::kTranslation, kKeys, [](double t) {
-      return std::vector<double>{0, kFigure[0].joint.y + 0.025 * std::cos(2 * kTau * t), 0};
+    add_channel(first, RigChannel::Path::kTranslation, kKeys, [strides](double t) {
+      return std::vector<double>{0, kFigure[0].joint.y + 0.025 * std::cos(2 * kTau * strides * t), 0};
     });
-    add_way(figure, start);
+    add_way(figure, radius, start);
     rig_.skins.push_back(std::move(skin));
     place(std::move(mesh), kSkin, figure, static_cast<std::int32_t>(rig_.skins.size()) - 1, std::move(rig));
   }

@@ -37,6 +37,10 @@ std::vector<std::string> explain(const SceneRequirements& r) {
            r.sun ? "a directional light: one shadow pass, filtered" : "no directional light: no shadow pass"),
       line("punctual lights", r.lights > 0,
            fmt::format("{} in all, at most {} reach one chunk", r.lights, r.most_lights_per_chunk)),
+      line("motion", false,
+           r.clips == 0 ? std::string("nothing moves")
+                        : fmt::format("{} clips, {} skinned and {} morphed instances: shown at rest", r.clips,
+                                      r.skinned_instances, r.morphed_instances)),
   };
 }
 

@@ -1,5 +1,6 @@
 #include "render/scene/animator.h"
 
+#include "render/scene/assemble.h"
 #include "render/scene/parade.h"
 
 #include <gtest/gtest.h>
@@ -68,7 +69,10 @@ TEST(Animator, GivesRigidMotionsFromRest) {
   animator.pose(0.5);
   motion = animator.rigid_motion(0);
   ASSERT_TRUE(motion);
-  expect_near(motion->orientation * glm::dvec3(11, 5, 0) + motion->position, first_vertex(animator));
+  expect_near(animator.pivot(0), {10, 5, 0});
+  expect_near(
+      motion->orientation * (glm::dvec3(11, 5, 0) - animator.pivot(0)) + animator.pivot(0) + motion->position,
+      first_vertex(animator));
 
   source.rig.clips[0].channels[0] = {.node = 1, .path = RigChannel::Path::kScale};
   source.rig.clips[0].channels[0].times = {0, 1};
@@ -142,6 +146,15 @@ TEST(Parade, MovesSmoothlyAndJoinsItsBeginning) {
   }
   EXPECT_EQ(rigid, 5U) << "the floor and four solids";
   EXPECT_EQ(deformed, 3U);
+}
+
+TEST(Parade, IsAssembledAtRestAndSaysWhatWouldMove) {
+  const auto scene = assemble(make_parade({.figures = 2, .cloths = 1, .orbiters = 4}));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->requirements.clips, 1U);
+  EXPECT_EQ(scene->requirements.skinned_instances, 2U);
+  EXPECT_EQ(scene->requirements.morphed_instances, 1U);
+  EXPECT_NE(explain(scene->requirements).back().find("shown at rest"), std::string::npos);
 }
 
 TEST(Parade, KeepsItsWeightsWhole) {
