@@ -28,7 +28,7 @@ struct GridTransform {
 /// How finely transforms are told: the bounds of their errors.
 struct TransformGrid {
   double step = 1e-3;                ///< metres between neighbouring translations, > 0
-  std::uint32_t rotation_bits = 16;  ///< a quaternion's members are told in steps of 2^-bits, 8..20
+  std::uint32_t rotation_bits = 14;  ///< a quaternion's members are told in steps of 2^-bits, 8..20
 
   /// Translations reach this many steps from rest, along each axis.
   static constexpr std::int32_t kFarthest = 1 << 28;
