@@ -3,6 +3,7 @@
 #include "base/program.h"
 #include "base/version.h"
 #include "client/settings.h"
+#include "proto/plain_text.h"
 
 #include <fmt/format.h>
 
@@ -41,6 +42,9 @@ struct Raw {
   std::string log_level = "info";
   std::string lens = "none";
   double wanted_frame_rate = 0;
+  std::optional<double> foveation;
+  std::vector<std::string> priorities;
+  double emphasis_after_s = 0;
   double wait_s = 5;
   double fov_degrees = 60;
   double duration_s = 10;
@@ -56,6 +60,14 @@ void add_connection_options(CLI::App& app, Raw& raw) {
   group->add_option("--bitrate", raw.wanted_bit_rate, "Wish for a video rate such as 10M");
   group->add_option("--server-fps", raw.wanted_frame_rate,
                     "Wish for this many server frames a second, 1..240");
+  group->add_option(
+      "--foveation", raw.foveation,
+      "Octaves of atlas area that surfaces lose per radian away from the view axis, 0..8, whatever "
+      "the server has: a sharper centre against the rim");
+  group->add_option("--priority", raw.priorities,
+                    "NAME=OCTAVES, once for each: atlas area of a material or object of the scene, -8..8");
+  group->add_option("--emphasis-after", raw.emphasis_after_s,
+                    "Seconds from the server's answer until it is told these two, 0..1000000");
 }
 
 void add_view_options(CLI::App& app, ClientSettings& s, Raw& raw) {
@@ -137,6 +149,24 @@ void apply_wishes(const Raw& raw, ClientSettings& s) {
   }
 }
 
+void apply_emphasis(const Raw& raw, ClientSettings& s) {
+  if (!raw.foveation && raw.priorities.empty()) return;
+  Emphasis& emphasis = s.emphasis.emplace();
+  if (raw.foveation) demand_range("--foveation", *raw.foveation, 0.0, Emphasis::kMostFoveation);
+  emphasis.foveation = raw.foveation;
+  if (raw.priorities.size() > Emphasis::kMostPriorities) {
+    refuse_option("--priority", raw.priorities.back(), "one of at most 256");
+  }
+  for (const std::string& text : raw.priorities) {
+    auto priority = parse_surface_priority(text);
+    if (!priority || !proto::is_plain_text(priority->name)) {
+      refuse_option("--priority", text, "NAME=OCTAVES, -8..8");
+    }
+    emphasis.priorities.push_back(*std::move(priority));
+  }
+  s.emphasis_after = parse_seconds("--emphasis-after", raw.emphasis_after_s, 1e6);
+}
+
 void apply_view(const Raw& raw, ClientSettings& s) {
   const auto size = parse_extent(raw.size);
   const auto fits = [](std::uint32_t side) { return side >= 16 && side <= 16'384; };
@@ -200,6 +230,7 @@ Options parse_options(int argc, const char* const* argv) {
   }
   options.settings.server = parse_server(raw.connect);
   apply_wishes(raw, options.settings);
+  apply_emphasis(raw, options.settings);
   apply_view(raw, options.settings);
   apply_output(raw, options.settings);
   return options;

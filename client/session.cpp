@@ -108,6 +108,7 @@ void Session::on_answer(const proto::ServerHello& answer, Time now) {
   media_due_ = now + settings_.datagram_timeout;
   next_report_ = now + settings_.report_interval;
   reader_.set_limit(proto::kMaxEnvelope);
+  if (settings_.emphasis && !emphasis_) set_emphasis(*settings_.emphasis, now + settings_.emphasis_after);
 }
 
 void Session::on_stream_closed(Time) {
@@ -206,6 +207,16 @@ std::optional<PoseId> Session::on_pose(const Pose& pose, Time sampled) {
   return id;
 }
 
+void Session::set_emphasis(Emphasis emphasis, Time at) {
+  emphasis_ = std::move(emphasis);
+  emphasis_due_ = at;
+}
+
+void Session::tell_emphasis(Time now) {
+  if (!emphasis_ || now < emphasis_due_) return;
+  send_message(*std::exchange(emphasis_, std::nullopt));
+}
+
 void Session::on_decode_failed() {
   if (media_) media_->assembler.require_idr();
 }
@@ -224,6 +235,7 @@ void Session::poll(Time now) {
     proto::encode(*request, out);
     send_datagram(std::move(out), traffic_.control_out);
   }
+  tell_emphasis(now);
   media_->assembler.poll(now);
   drain_assembler();
   const Duration trip = std::max(media_->clock.round_trip(), settings_.pli_round_trip_floor);
@@ -256,6 +268,7 @@ std::optional<Time> Session::next_deadline() const {
   Time next = std::min({last_heard_ + settings_.silence_timeout, next_report_,
                         media_->greeter.next_deadline(), media_->clock.next_deadline()});
   if (media_due_) next = std::min(next, *media_due_);
+  if (emphasis_) next = std::min(next, emphasis_due_);
   if (const auto gap = media_->assembler.next_deadline()) next = std::min(next, *gap);
   if (media_->assembler.needs_refresh())
     next = std::min(next, media_->refresh.next_deadline().value_or(Time{}));

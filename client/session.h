@@ -38,6 +38,9 @@ class Session {
   /// The newest pose: numbered and sent with the two before it. nullopt before the handshake ended and after
   /// the end.
   std::optional<PoseId> on_pose(const Pose& pose, Time sampled);
+  /// How the server is to share out our stream's atlas, by the rules of proto::parse_message: said at `at`,
+  /// or by the first poll after the handshake, in place of all that was said before.
+  void set_emphasis(Emphasis emphasis, Time at);
   /// The decoder gave up: frames are withheld until an IDR, which is asked for.
   void on_decode_failed();
   void set_progress(const Progress& progress) { progress_ = progress; }
@@ -88,6 +91,7 @@ class Session {
   void on_sync_response(ByteView datagram, Time now);
   void accept_datagram(Time now);
   void refuse_datagram(ByteView datagram);
+  void tell_emphasis(Time now);
   void send_message(const proto::Message& message);
   void send_datagram(ByteBuffer datagram, std::uint64_t& channel);
   void send_report(Time now);
@@ -106,6 +110,8 @@ class Session {
   std::optional<proto::ServerHello> answer_;
   std::optional<Media> media_;
   std::optional<SessionEnd> end_;
+  std::optional<Emphasis> emphasis_;  ///< not said yet
+  Time emphasis_due_{};
   Progress progress_;
   Traffic traffic_;
   PacketCounts packets_;

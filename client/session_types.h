@@ -1,11 +1,13 @@
 #pragma once
 
+#include "base/emphasis.h"
 #include "base/time.h"
 #include "proto/frame_assembler.h"
 #include "proto/messages.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace atlaswire::client {
@@ -13,6 +15,8 @@ namespace atlaswire::client {
 /// How a session presents itself and when it loses patience.
 struct SessionSettings {
   proto::ClientHello hello;
+  std::optional<Emphasis> emphasis;  ///< said `emphasis_after` the server's answer
+  Duration emphasis_after{};
   std::uint32_t ssrc = 1;                               ///< of our RTCP; random
   std::string cname = "atlas-client";                   ///< of our RTCP
   Duration answer_timeout = std::chrono::seconds(10);   ///< from the hello to the answer

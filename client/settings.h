@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/emphasis.h"
 #include "base/host_port.h"
 #include "base/log.h"
 #include "base/time.h"
@@ -38,6 +39,8 @@ struct ClientSettings {
   std::optional<Extent2D> wanted_atlas;
   std::optional<BitRate> wanted_bit_rate;
   std::optional<double> wanted_frame_rate;
+  std::optional<Emphasis> emphasis;  ///< nullopt: as the server has it
+  Duration emphasis_after{};         ///< from the server's answer to telling it
 
   std::string device = "auto";
   bool validation = false;

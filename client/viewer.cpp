@@ -59,6 +59,8 @@ class Viewer {
     NetworkSettings n{.server = settings_.server,
                       .wait = settings_.wait,
                       .pose_interval = from_seconds(1 / settings_.pose_rate)};
+    n.session.emphasis = settings_.emphasis;
+    n.session.emphasis_after = settings_.emphasis_after;
     std::random_device entropy;  // an SSRC must differ between clients
     n.session.ssrc = entropy() | 1U;
     proto::ClientHello& hello = n.session.hello;

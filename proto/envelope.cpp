@@ -1,5 +1,6 @@
 #include "proto/envelope.h"
 
+#include "base/emphasis.h"
 #include "proto/datagram.h"
 #include "proto/framing.h"
 #include "proto/plain_text.h"
@@ -148,6 +149,22 @@ Result<void> check(const wire::StatsReport& m) {
   return rules.result();
 }
 
+Result<void> check(const wire::Emphasis& m) {
+  Rules rules;
+  rules.require(!m.has_foveation() || in_range(m.foveation(), 0, atlaswire::Emphasis::kMostFoveation),
+                "emphasis.foveation");
+  const auto count = static_cast<std::size_t>(m.priorities_size());
+  rules.require(count <= atlaswire::Emphasis::kMostPriorities, "emphasis.priorities");
+  constexpr double kMost = atlaswire::Emphasis::kMostOctaves;
+  for (const wire::SurfacePriority& p : m.priorities()) {
+    if (rules.result().has_error()) break;
+    rules.require(!p.surface().empty() && is_text(p.surface(), atlaswire::Emphasis::kMostName),
+                  "emphasis.priorities.surface");
+    rules.require(in_range(p.octaves(), -kMost, kMost), "emphasis.priorities.octaves");
+  }
+  return rules.result();
+}
+
 }  // namespace
 
 Result<void> check_envelope(const wire::Envelope& envelope) {
@@ -166,6 +183,8 @@ Result<void> check_envelope(const wire::Envelope& envelope) {
       return check(envelope.stats_report());
     case wire::Envelope::kRestartRequest:
       return check(envelope.restart_request());
+    case wire::Envelope::kEmphasis:
+      return check(envelope.emphasis());
     case wire::Envelope::MESSAGE_NOT_SET:
       break;
   }

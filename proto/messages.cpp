@@ -186,6 +186,23 @@ void to_wire(const RestartRequest& m, wire::Envelope& envelope) {
   out.set_text(to_plain_text(m.text, 1024));
 }
 
+Emphasis from_wire(const wire::Emphasis& m) {
+  Emphasis out;
+  if (m.has_foveation()) out.foveation = m.foveation();
+  for (const wire::SurfacePriority& p : m.priorities()) out.priorities.push_back({p.surface(), p.octaves()});
+  return out;
+}
+
+void to_wire(const Emphasis& m, wire::Envelope& envelope) {
+  auto& out = *envelope.mutable_emphasis();
+  if (m.foveation) out.set_foveation(*m.foveation);
+  for (const SurfacePriority& p : m.priorities) {
+    wire::SurfacePriority& added = *out.add_priorities();
+    added.set_surface(to_plain_text(p.name, Emphasis::kMostName));
+    added.set_octaves(p.octaves);
+  }
+}
+
 }  // namespace
 
 Result<Message> parse_message(ByteView bytes) {
@@ -206,6 +223,8 @@ Result<Message> parse_message(ByteView bytes) {
       return Message{from_wire(envelope->stats_report())};
     case wire::Envelope::kRestartRequest:
       return Message{from_wire(envelope->restart_request())};
+    case wire::Envelope::kEmphasis:
+      return Message{from_wire(envelope->emphasis())};
     case wire::Envelope::MESSAGE_NOT_SET:
       break;
   }
@@ -225,8 +244,8 @@ void append_message(const Message& message, ByteBuffer& out) {
 }
 
 const char* message_name(const Message& message) {
-  constexpr const char* kNames[] = {"client hello", "server hello", "frame meta",     "refusal",
-                                    "goodbye",      "stats report", "restart request"};
+  constexpr const char* kNames[] = {"client hello", "server hello", "frame meta",      "refusal",
+                                    "goodbye",      "stats report", "restart request", "emphasis"};
   return kNames[message.index()];
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/bytes.h"
+#include "base/emphasis.h"
 #include "base/ids.h"
 #include "base/result.h"
 #include "base/time.h"
@@ -100,8 +101,10 @@ struct RestartRequest {
   std::string text;  ///< one line for people, at most 1024 octets
 };
 
-using Message =
-    std::variant<ClientHello, ServerHello, FrameMeta, Refusal, Goodbye, StatsReport, RestartRequest>;
+/// `atlaswire::Emphasis` is a message too. Client to server, any time after the answer: how its own stream
+/// shares out the atlas, from the next frame on. Each replaces the one before as a whole.
+using Message = std::variant<ClientHello, ServerHello, FrameMeta, Refusal, Goodbye, StatsReport,
+                             RestartRequest, Emphasis>;
 
 /// Parses one envelope (without its length prefix) and checks every field: see envelope.h for what is
 /// refused. The error's detail names the field.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/emphasis.h"
 #include "base/ids.h"
 #include "base/pose.h"
 #include "base/time.h"
@@ -112,7 +113,7 @@ struct MethodSettings {
   double max_oversampling = 4.0;       ///< texels a pixel may get when the atlas has room
   std::uint32_t reshade_interval = 1;  ///< each block is shaded at least every n-th frame; new ones at once
   std::uint32_t frames_in_flight = 3;
-  double foveation = 0;  ///< >= 0; octaves of atlas area lost per radian away from the view axis
+  Emphasis emphasis;  ///< until Method::set_emphasis()
   AllocatorKind allocator_kind = AllocatorKind::kAuto;
   double level_hysteresis = 0.25;  ///< 0..1 octaves; blocks that stay put against the sharpest size for each
   AllocatorSettings allocator;     ///< its atlas member follows `atlas`
@@ -132,6 +133,8 @@ class Method {
   /// The memory that a receiver must have to derive each frame's layout from its requests
   /// (make_sequential_allocator); nullopt: it cannot.
   [[nodiscard]] virtual std::optional<AllocatorSettings> memory() const = 0;
+  /// From the next frame on, in place of the one before. Methods without an atlas have nothing to share out.
+  virtual void set_emphasis(const Emphasis& emphasis) = 0;
   /// Every live patch, ascending: what a new client must be told. Empty without an atlas.
   [[nodiscard]] virtual std::vector<PlacedPatch> blocks() const = 0;
 };

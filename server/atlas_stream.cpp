@@ -35,15 +35,20 @@ AtlasStream::AtlasStream(const StreamSettings& settings, std::shared_ptr<const r
       preferred_meta_codec_(suited(settings.meta_codec, *method_)),
       tracker_(std::move(scene), settings.grid_bits),
       schedule_({.interval = settings.video.intra_interval}),
+      layout_colours_(settings.layout_colours),
       video_(video_settings(settings, method_->picture_extent())),
       limits_(tracker_.limits(settings.render.atlas)),
       meta_codec_(preferred_meta_codec_),
-      meta_(codec::make_meta_encoder(meta_codec_, limits_)) {}
+      meta_(codec::make_meta_encoder(meta_codec_, limits_)) {
+  const render::AllocatorSettings& allocator = settings.render.allocator;
+  if (layout_colours_) layout_.emplace(settings.render.atlas, allocator.superblock_log2);
+}
 
 PreparedFrame AtlasStream::render(const ViewRequest& request) {
   if (request.refresh) schedule_.ask_for_loss();
   if (request.restart) schedule_.ask_at_once();
   if (method_->wants_intra()) schedule_.ask_for_memory();
+  if (request.emphasis) method_->set_emphasis(*request.emphasis);
   PreparedFrame prepared;
   prepared.pose = request.pose;
   prepared.cover = request.cover;
@@ -58,6 +63,10 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
                                        .intra = prepared.intra,
                                        .restart = restart && leaves_positions(told_as_),
                                        .hints = request.hints});
+  if (layout_) {
+    layout_->observe(*prepared.rendered.change);
+    if (request.layout) prepared.layout = layout_->picture(*layout_colours_);
+  }
   prepared.update = update_for(prepared.rendered, restart);
   if (restart) prepared.meta_codec = told_as_;
   prepared.rendered.change = nullptr;

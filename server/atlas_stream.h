@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/video.h"
+#include "render/atlas/usage_overlay.h"
 #include "server/encoded_frame.h"
 #include "server/intra_schedule.h"
 #include "server/replica_tracker.h"
@@ -46,6 +47,8 @@ class AtlasStream final : public FrameMaker {
   FrameId next_frame_{};
   bool told_ = false;               ///< clients have been told the whole once
   codec::MetaCodecKind told_as_{};  ///< since they were
+  const std::optional<render::LayoutColours> layout_colours_;
+  std::optional<render::UsageOverlay> layout_;  ///< with layout_colours_
   // Encoding thread.
   codec::VideoEncoder video_;
   codec::MetaLimits limits_;

@@ -112,6 +112,15 @@ void Connection::close(proto::Goodbye::Reason reason, const std::string& text) {
   pump();
 }
 
+void Connection::on_emphasis() {
+  if (runner_) runner_->set_emphasis(over(wish_, host_.emphasis()));
+}
+
+bool Connection::request_layout() {
+  if (runner_) runner_->request_layout();
+  return runner_ != nullptr;
+}
+
 void Connection::abort(const std::string& reason) {
   if (finished_) return;
   session_.on_stream_end(reason, steady_now());
@@ -158,6 +167,10 @@ void Connection::steer_stream() {
   if (pose && pose->stamped.id != last_pose_) {
     last_pose_ = pose->stamped.id;
     runner_->set_view(pose->stamped, pose->received, session_.round_trip());
+  }
+  if (auto wish = session_.take_emphasis()) {
+    wish_ = *std::move(wish);
+    on_emphasis();
   }
   if (session_.take_refresh_request()) runner_->request_refresh();
   if (const auto why = session_.take_restart_request(steady_now())) {

@@ -20,6 +20,8 @@ class ConnectionHost {
   /// May one more session begin? The refusal, if not.
   virtual std::optional<proto::Refusal> admit(const Connection& connection) = 0;
   [[nodiscard]] virtual const proto::StreamDescription& description() const = 0;
+  /// The operator's; a client's wish stands before it.
+  [[nodiscard]] virtual const Emphasis& emphasis() const = 0;
   /// Starts a runner whose frames come back through Connection::on_frame and on_stream_failure.
   virtual std::unique_ptr<StreamRunner> start_stream(Connection& connection) = 0;
   /// Ends a runner without waiting.
@@ -49,6 +51,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void on_frame(const FramePtr& frame);
   void on_stream_failure(const std::string& reason);
   void close(proto::Goodbye::Reason reason, const std::string& text);
+  /// The host's emphasis is another one now.
+  void on_emphasis();
+  /// Asks the stream for a picture of its layout; false when none runs.
+  bool request_layout();
   /// Without a goodbye.
   void abort(const std::string& reason);
   /// Lets everything out that may leave, acts on the session's state, arms the timer.
@@ -79,6 +85,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Session session_;
   std::unique_ptr<StreamRunner> runner_;
   PoseId last_pose_{};
+  Emphasis wish_;
   std::optional<proto::PeerAddress> known_address_;
   std::array<std::byte, 16384> input_{};
   bool reading_ = false;

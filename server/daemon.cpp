@@ -17,16 +17,17 @@ namespace atlaswire::server {
 Daemon::Daemon(const DaemonSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
 Daemon::~Daemon() = default;
 std::uint16_t Daemon::port() const { return impl_->port(); }
-void Daemon::serve(StreamSource& source, const std::function<void()>& on_ready) {
-  impl_->serve(source, on_ready);
-}
+void Daemon::serve(StreamSource& source, const DaemonHooks& hooks) { impl_->serve(source, hooks); }
 void Daemon::stop() { impl_->stop(); }
+void Daemon::reload() { impl_->reload(); }
+void Daemon::draw_layout() { impl_->draw_layout(); }
 
 Daemon::Impl::Impl(const DaemonSettings& settings)
     : settings_(settings),
       acceptor_(io_),
       accept_again_(io_),
       signals_(io_),
+      requests_(io_),
       stats_timer_(io_),
       end_timer_(io_),
       drain_timer_(io_),
@@ -48,13 +49,15 @@ void Daemon::Impl::end_connections() {
   reaper_.reset();
 }
 
-void Daemon::Impl::serve(StreamSource& source, const std::function<void()>& on_ready) {
+void Daemon::Impl::serve(StreamSource& source, const DaemonHooks& hooks) {
   source_ = &source;
+  hooks_ = hooks;
   reaper_ = std::make_unique<Reaper>();
   boost::system::error_code e;
   acceptor_.listen(asio::socket_base::max_listen_connections, e);
   if (e) throw cannot_listen(settings_.listen, port_, e.message());
   watch_signals();
+  watch_requests();
   udp_->start();
   accept();
   if (settings_.max_runtime > Duration{0}) arm_end();
@@ -62,7 +65,7 @@ void Daemon::Impl::serve(StreamSource& source, const std::function<void()>& on_r
   spdlog::info("listening on {}:{} (TCP and UDP), scene '{}', atlas {}x{}", settings_.listen, port_,
                source.description().scene, source.description().atlas.width,
                source.description().atlas.height);
-  if (on_ready) on_ready();
+  if (hooks_.on_ready) hooks_.on_ready();
   io_.run();
   udp_->close();
   end_connections();
@@ -213,8 +216,10 @@ void Daemon::Impl::arm_stats() {
 }
 
 void Daemon::Impl::log_stats() {
+  const std::string atlas = line_.atlas();
   spdlog::info("{} | stray datagrams {}", line_.take(steady_now() - stats_since_, streaming_),
                stray_datagrams_);
+  spdlog::info(atlas);
   for (const auto& connection : connections_) {
     const Session& session = connection.second->session();
     if (session.state() != SessionState::kStreaming) continue;

@@ -9,6 +9,13 @@
 
 namespace atlaswire::server {
 
+/// What the daemon calls on its I/O thread.
+struct DaemonHooks {
+  std::function<void()> on_ready;  ///< clients may connect now
+  std::function<Emphasis()>
+      reread;  ///< the operator's emphasis, anew; may throw ProgramError; empty: no SIGHUP
+};
+
 /// The daemon: one thread of I/O around sessions and their streams. TCP and UDP share one port number.
 class Daemon {
  public:
@@ -21,10 +28,15 @@ class Daemon {
 
   [[nodiscard]] std::uint16_t port() const;
   /// Listens, writes the ready file and serves on this thread until a signal, --max-runtime or `stop`, then
-  /// drains. `on_ready` is called once clients may connect. `source` must outlive the call.
-  void serve(StreamSource& source, const std::function<void()>& on_ready = {});
+  /// drains. `source` must outlive the call.
+  void serve(StreamSource& source, const DaemonHooks& hooks = {});
   /// Drains, as SIGTERM does. Any thread.
   void stop();
+  /// What SIGHUP does: running streams and later ones get the emphasis that `reread` gives. Any thread.
+  void reload();
+  /// What SIGUSR1 does: the mirrored session's stream draws its atlas's layout into the file that the
+  /// settings name. Any thread.
+  void draw_layout();
 
  private:
   class Impl;

@@ -38,6 +38,7 @@ std::unique_ptr<StreamRunner> Daemon::Impl::start_stream(Connection& connection)
   runner.camera = client_camera(hello.display, hello.vertical_fov, source_->description().near_plane);
   runner.eye_separation = hello.eye_separation;
   runner.meta_codec = connection.session().meta_codec();
+  runner.emphasis = emphasis();
   // Always told, since a warm stream may come from a client with another wish. Constant quality has no rate.
   if (const BitRate rate = settings_.stream.video.bit_rate; rate.bits_per_second != 0) {
     runner.bit_rate = std::min(rate, hello.wanted_bit_rate.value_or(rate));
@@ -55,6 +56,9 @@ std::unique_ptr<StreamRunner> Daemon::Impl::start_stream(Connection& connection)
     asio::post(io_, [weak, reason = std::move(reason)] {
       if (const auto target = weak.lock()) target->on_stream_failure(reason);
     });
+  };
+  callbacks.on_layout = [this, id = connection.session().id()](const render::Picture& layout) {
+    keep_layout(id, layout);
   };
   auto stream = std::make_unique<StreamRunner>(runner, std::move(callbacks));
   ++streaming_;

@@ -20,18 +20,21 @@
 namespace atlaswire::server {
 
 /// The daemon's parts, all on the I/O thread. daemon.cpp: serving and draining; daemon_host.cpp: what it does
-/// for its connections.
+/// for its connections; daemon_requests.cpp: what an operator asks of it while it runs.
 class Daemon::Impl final : public ConnectionHost {
  public:
   explicit Impl(const DaemonSettings& settings);
   ~Impl() override;
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  void serve(StreamSource& source, const std::function<void()>& on_ready);
+  void serve(StreamSource& source, const DaemonHooks& hooks);
   void stop();
+  void reload();
+  void draw_layout();
 
   std::optional<proto::Refusal> admit(const Connection& connection) override;
   [[nodiscard]] const proto::StreamDescription& description() const override;
+  [[nodiscard]] const Emphasis& emphasis() const override { return settings_.stream.render.emphasis; }
   std::unique_ptr<StreamRunner> start_stream(Connection& connection) override;
   void end_stream(std::unique_ptr<StreamRunner> runner) override;
   bool can_send() override { return !udp_->is_blocked(); }
@@ -43,6 +46,11 @@ class Daemon::Impl final : public ConnectionHost {
  private:
   void watch_signals();
   void wait_signal();
+  void watch_requests();
+  void wait_request();
+  void reload_now();
+  void draw_layout_now();
+  void keep_layout(SessionId session, const render::Picture& layout) const;
   void drain(const std::string& why);
   void finish_drain();
   void end_connections();
@@ -62,11 +70,13 @@ class Daemon::Impl final : public ConnectionHost {
   tcp::acceptor acceptor_;
   asio::steady_timer accept_again_;
   asio::signal_set signals_;
+  asio::signal_set requests_;  ///< of the operator, to a daemon that goes on
   asio::steady_timer stats_timer_;
   asio::steady_timer end_timer_;
   asio::steady_timer drain_timer_;
   std::uint16_t port_ = 0;
   StreamSource* source_ = nullptr;
+  DaemonHooks hooks_;
   StatsCsv csv_;
   StatsLine line_;
   Time stats_since_{};

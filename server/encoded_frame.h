@@ -6,6 +6,7 @@
 #include "base/time.h"
 #include "codec/meta_update.h"
 #include "proto/messages.h"
+#include "render/image/picture.h"
 #include "render/method.h"
 
 #include <cstdint>
@@ -22,8 +23,10 @@ struct ViewRequest {
   Duration cover{};
   bool refresh = false;  ///< somebody lost a picture: make an I-frame, however recent the last
   bool restart = false;  ///< somebody knows nothing yet: an I-frame, and a meta update that tells all
+  bool layout = false;   ///< somebody wants a picture of the frame's layout
   std::optional<codec::MetaCodecKind> meta_codec;  ///< from a `restart` on; nullopt: the settings'
   std::optional<BitRate> bit_rate;                 ///< from this frame on
+  std::optional<Emphasis> emphasis;                ///< from this frame on: Method::set_emphasis
   render::ViewHints hints;
 };
 
@@ -36,7 +39,8 @@ struct PreparedFrame {
   codec::MetaUpdate update;
   std::optional<codec::MetaCodecKind> meta_codec;  ///< from this update on
   std::optional<BitRate> bit_rate;
-  proto::StageStamps stamps;  ///< filled by whoever owns a clock
+  std::optional<render::Picture> layout;  ///< ViewRequest::layout, where the stream follows its layout
+  proto::StageStamps stamps;              ///< filled by whoever owns a clock
 };
 
 /// What one frame cost, for statistics.

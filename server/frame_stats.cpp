@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace atlaswire::server {
 
 StatsCsv::StatsCsv(const std::string& path) {
@@ -45,6 +47,16 @@ void StatsLine::add(const Departure& d) {
   sums_.video_bytes += d.dropped ? 0 : f.video.size();
   sums_.meta_bytes += f.meta.size();
   sums_.visible += f.report.visible_patches;
+  const FrameReport& report = f.report;
+  sums_.usage.allocated += report.usage.allocated;
+  sums_.usage.partial_tail += report.usage.partial_tail;
+  sums_.usage.on_stacks += report.usage.on_stacks;
+  sums_.usage.inaccessible += report.usage.inaccessible;
+  sums_.usage.free += report.usage.free;
+  sums_.moved += report.layout.moved;
+  sums_.refused += report.layout.refused;
+  sums_.resets += report.layout.reset ? 1 : 0;
+  sums_.bias += report.bias;
   sums_.visibility += f.report.render.visibility;
   sums_.allocation += f.report.render.allocation;
   sums_.shading += f.report.render.shading;
@@ -68,6 +80,21 @@ std::string StatsLine::take(Duration elapsed, std::size_t sessions) {
       sessions, static_cast<double>(s.frames) / seconds, mbps(s.video_bytes), mbps(s.meta_bytes),
       mean(s.visibility), mean(s.allocation), mean(s.shading), mean(s.conversion), mean(s.render),
       mean(s.encode), mean(s.send), static_cast<double>(s.visible) / frames, s.dropped);
+}
+
+std::string StatsLine::atlas() const {
+  const render::AtlasUsage& u = sums_.usage;
+  const auto texels = static_cast<double>(
+      std::max<std::uint64_t>(1, u.allocated + u.partial_tail + u.on_stacks + u.inaccessible + u.free));
+  const auto percent = [&](std::uint64_t part) { return 100 * static_cast<double>(part) / texels; };
+  const double frames = sums_.frames == 0 ? 1.0 : static_cast<double>(sums_.frames);
+  return fmt::format(
+      "atlas: allocated {:.1f} %, tails {:.1f} %, stacks {:.1f} %, inaccessible {:.1f} %, free {:.1f} % | "
+      "bias "
+      "{:.2f} octaves | a frame: {:.1f} blocks moved, {:.1f} patches refused | resets {}",
+      percent(u.allocated), percent(u.partial_tail), percent(u.on_stacks), percent(u.inaccessible),
+      percent(u.free), sums_.bias / frames, static_cast<double>(sums_.moved) / frames,
+      static_cast<double>(sums_.refused) / frames, sums_.resets);
 }
 
 }  // namespace atlaswire::server

@@ -2,16 +2,22 @@
 #include "base/program.h"
 #include "render/gpu/open_device.h"
 #include "render/scene/load.h"
+#include "render/scene/surface_priorities.h"
 #include "server/atlas_source.h"
 #include "server/daemon.h"
 #include "server/mirror.h"
 #include "server/ready_file.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <csignal>
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -36,13 +42,29 @@ void print_devices() {
   }
 }
 
+template <class Named>
+void print_names(const char* what, const std::vector<Named>& all) {
+  std::set<std::string> names;
+  for (const Named& one : all) names.insert(one.name);
+  names.erase("");
+  std::printf("  %zu named %s: %s\n", names.size(), what, fmt::format("{}", fmt::join(names, ", ")).c_str());
+}
+
 void explain_scene(const std::string& name) {
   const auto scene = open_scene(name);
   std::printf("scene '%s'\n", scene->name.c_str());
   for (const std::string& line : render::explain(scene->requirements)) std::printf("  %s\n", line.c_str());
+  print_names("materials", scene->materials);
+  print_names("objects", scene->objects);
 }
 
-void serve(const server::DaemonSettings& settings) {
+void warn_of_unknown(const render::Scene& scene, const Emphasis& emphasis) {
+  for (const std::string& name : render::unknown_surfaces(scene, emphasis)) {
+    spdlog::warn("--priority {}: the scene has no such material or object; --explain-scene lists them", name);
+  }
+}
+
+void serve(const server::DaemonSettings& settings, const std::function<Emphasis()>& reread) {
   // In the order of what fails cheapest: the port, the scene, the device, the encoder.
   const server::ReadyFile ready(settings.ready_file);
   server::Daemon daemon(settings);
@@ -57,7 +79,8 @@ void serve(const server::DaemonSettings& settings) {
     std::fputs(server::mirror_sdp(*settings.mirror, scene->name, source.parameter_sets()).c_str(), stdout);
     std::fflush(stdout);
   }
-  daemon.serve(source, [&] { ready.write(daemon.port()); });
+  warn_of_unknown(*scene, settings.stream.render.emphasis);
+  daemon.serve(source, {.on_ready = [&] { ready.write(daemon.port()); }, .reread = reread});
   const auto complaints = render::validation_messages(*device);
   if (!complaints.empty()) {
     throw ProgramError(ExitCode::kInternal, "Vulkan validation found " + std::to_string(complaints.size()) +
@@ -77,7 +100,11 @@ int body(int argc, char** argv) {
   } else if (options.mode == server::Mode::kExplainScene) {
     explain_scene(options.settings.scene);
   } else {
-    serve(options.settings);
+    std::function<Emphasis()> reread;
+    if (options.has_config) {
+      reread = [=] { return server::parse_options(argc, argv).settings.stream.render.emphasis; };
+    }
+    serve(options.settings, reread);
   }
   return 0;
 }

@@ -29,7 +29,8 @@ constexpr const char* kFooter = R"(Examples:
   atlasd --scene town.glb --explain-scene     what the scene needs, and what it is spared
 
 Exit codes: 0 done, 2 usage, 3 scene, 4 no Vulkan device, 5 port in use, 9 cannot write a file.
-SIGTERM or SIGINT drains: clients get a goodbye within 2 s; a second signal ends at once.)";
+SIGTERM or SIGINT drains: clients get a goodbye within 2 s; a second signal ends at once.
+SIGHUP reads --config again and takes foveation and priority from it; SIGUSR1 draws --layout-picture.)";
 
 /// The texts and numbers that become other types after parsing.
 struct Raw {
@@ -37,9 +38,12 @@ struct Raw {
   std::string bit_rate = "10M";
   std::string cover = "auto";
   std::string allocator = "auto";
+  std::string layout_colours = "class";
   std::string meta_codec = name(StreamSettings{}.meta_codec);
   std::string mirror;
   std::string log_level = "info";
+  std::vector<std::string> priorities;
+  double foveation = 0;
   double prediction_step_ms = 1000.0 / 30;
   double stats_interval_s = 5;
   double max_runtime_s = 0;
@@ -81,9 +85,12 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
                     "Largest time between predicted views, ms, 1..1000");
   group->add_option("--max-oversampling", render.max_oversampling,
                     "Texels a pixel may get while the atlas has room, 1..8: sharper against more shading");
-  group->add_option("--foveation", render.foveation,
+  group->add_option("--foveation", raw.foveation,
                     "Octaves of atlas area that surfaces lose per radian away from the view axis, 0..8: a "
                     "sharper centre against the rim");
+  group->add_option("--priority", raw.priorities,
+                    "NAME=OCTAVES, once for each: atlas area of a material or object (see --explain-scene) "
+                    "beside what its size on screen asks for, -8..8");
   group->add_option("--allocator", raw.allocator,
                     "Who lays the atlas out: device, sequential (on the host), or auto: the device unless it "
                     "is a CPU; the layout is the same");
@@ -150,7 +157,11 @@ void add_report_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
                     R"(Write {"port":N,"pid":N} here, atomically, once clients may connect)");
   group->add_option("--stats-interval", raw.stats_interval_s, "Seconds between statistics lines; 0: none");
   group->add_option("--stats-csv", s.stats_csv,
-                    "Write a line per frame: stage times, bytes, visible patches");
+                    "Write a line per frame: stage times, bytes, visible patches, the atlas's memory");
+  group->add_option("--layout-picture", s.layout_picture,
+                    "PNG of the first live session's atlas memory, drawn anew at each SIGUSR1");
+  group->add_option("--layout-colours", raw.layout_colours,
+                    "What its colours tell: class (in use, fragmented, free), level (size) or age of blocks");
   group->add_option("--max-runtime", raw.max_runtime_s, "Drain and exit 0 after this many seconds; 0: never");
   group->add_option("--log-level", raw.log_level, "trace, debug, info, warn, error or off");
   group->add_flag("--json-logs", s.log.json, "Log one JSON object a line on stderr");
@@ -178,6 +189,17 @@ render::AllocatorKind parse_allocator(const std::string& text) {
   return render::AllocatorKind::kAuto;
 }
 
+Emphasis parse_emphasis(const Raw& raw) {
+  demand_range("--foveation", raw.foveation, 0.0, Emphasis::kMostFoveation);
+  Emphasis emphasis{.foveation = raw.foveation};
+  for (const std::string& text : raw.priorities) {
+    auto priority = parse_surface_priority(text);
+    if (!priority) refuse_option("--priority", text, "NAME=OCTAVES, -8..8");
+    emphasis.priorities.push_back(*std::move(priority));
+  }
+  return emphasis;
+}
+
 void apply_picture(const Raw& raw, StreamSettings& s) {
   auto& render = s.render;
   const auto atlas = parse_extent(raw.atlas);
@@ -197,7 +219,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   render.prediction_step = from_seconds(raw.prediction_step_ms / 1000);
   demand_range("--max-oversampling", render.max_oversampling, 1.0, 8.0);
   render.allocator_kind = parse_allocator(raw.allocator);
-  demand_range("--foveation", render.foveation, 0.0, 8.0);
+  render.emphasis = parse_emphasis(raw);
   demand_range("--level-hysteresis", render.level_hysteresis, 0.0, 1.0);
   demand_range("--reshade-interval", render.reshade_interval, 1U, 60U);
   if (s.grid_bits != 0) demand_range("--grid-bits", s.grid_bits, 8U, 20U);
@@ -249,6 +271,12 @@ void apply_network(const Raw& raw, DaemonSettings& s) {
 }
 
 void apply_reports(const Raw& raw, DaemonSettings& s) {
+  constexpr std::array kColours{"class", "level", "age"};  // in the order of render::LayoutColours
+  const auto colours = std::find(kColours.begin(), kColours.end(), raw.layout_colours);
+  if (colours == kColours.end()) refuse_option("--layout-colours", raw.layout_colours, "class, level or age");
+  if (!s.layout_picture.empty()) {
+    s.stream.layout_colours = static_cast<render::LayoutColours>(colours - kColours.begin());
+  }
   s.stats_interval = parse_seconds("--stats-interval", raw.stats_interval_s, 0, 86'400);
   s.max_runtime = parse_seconds("--max-runtime", raw.max_runtime_s, 0, 1e9);
   constexpr std::array kLevels{"trace", "debug", "info", "warn", "error", "off"};
@@ -294,6 +322,7 @@ Options parse_options(int argc, const char* const* argv) {
   apply_network(raw, options.settings);
   apply_reports(raw, options.settings);
   options.mode = mode_of(raw);
+  options.has_config = app.get_config_ptr()->count() > 0;
   return options;
 }
 

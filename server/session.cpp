@@ -101,6 +101,9 @@ void Session::on_message(const proto::Message& message, Time now) {
     return on_restart_request(*lost);
   } else if (std::holds_alternative<proto::StatsReport>(message)) {
     return;
+  } else if (const auto* emphasis = std::get_if<Emphasis>(&message)) {
+    emphasis_ = *emphasis;
+    return;
   }
   on_bad_bytes(Error(proto::WireError::kBadType,
                      fmt::format("a {} while {}", proto::message_name(message), name(state_))),

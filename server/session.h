@@ -110,6 +110,8 @@ class Session {
   bool take_refresh_request() { return std::exchange(refresh_, false); }
   /// Why the client asks to be told all anew; once a request, and at most once a second: later then.
   std::optional<std::string> take_restart_request(Time now);
+  /// The client's newest wish for its stream's atlas, if one came since the last call.
+  std::optional<Emphasis> take_emphasis() { return std::exchange(emphasis_, std::nullopt); }
   [[nodiscard]] const std::optional<proto::ReceivedPose>& newest_pose() const { return poses_.newest(); }
   /// By RTCP; 0 before the first report.
   [[nodiscard]] Duration round_trip() const { return round_trip_; }
@@ -165,6 +167,7 @@ class Session {
   bool refresh_ = false;
   std::optional<std::string> restart_;
   std::optional<Time> last_restart_;
+  std::optional<Emphasis> emphasis_;
   Duration round_trip_{};
   double loss_ = 0;
   SessionCounts counts_;

@@ -6,6 +6,7 @@
 #include "base/units.h"
 #include "codec/meta_update.h"
 #include "codec/video.h"
+#include "render/atlas/usage_overlay.h"
 #include "render/method.h"
 
 #include <cstdint>
@@ -35,6 +36,7 @@ struct StreamSettings {
       0;  ///< of the client replica's position grid, 8..20; 0: PositionGrid::suited_bits
   codec::MetaCodecKind meta_codec = codec::kMetaCodecs.front();  ///< for clients that know it
   CoverSettings cover;
+  std::optional<render::LayoutColours> layout_colours;  ///< of ViewRequest::layout; nullopt: not followed
 };
 
 /// Who may connect, and how long each may stay silent or slow.
@@ -71,6 +73,7 @@ struct DaemonSettings {
   std::string ready_file;        ///< empty: none
   Duration stats_interval = 5s;  ///< 0: no periodic line
   std::string stats_csv;         ///< empty: none
+  std::string layout_picture;    ///< PNG that draw_layout() writes; empty: none
   Duration max_runtime{};        ///< 0: until a signal
   LogSettings log;
 };
@@ -83,6 +86,7 @@ struct Options {
   Mode mode = Mode::kServe;
   DaemonSettings settings;
   std::string text;
+  bool has_config = false;  ///< read from a file that may be read again
 };
 
 /// Reads the command line and the file that --config names (the command line wins). Throws ProgramError

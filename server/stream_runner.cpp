@@ -20,6 +20,7 @@ Duration interval_of(double fps) { return from_seconds(1.0 / fps); }
 StreamRunner::StreamRunner(const Settings& settings, Callbacks callbacks)
     : settings_(settings),
       callbacks_(std::move(callbacks)),
+      emphasis_(settings.emphasis),
       cover_(settings.cover, interval_of(settings.max_fps)),
       rate_(settings.bit_rate, settings.encoder_fps),
       renderer_([this](const std::stop_token& stop) { render_loop(stop); }),
@@ -50,6 +51,16 @@ void StreamRunner::request_refresh() {
 void StreamRunner::request_restart() {
   const std::lock_guard lock(mutex_);
   restart_ = true;
+}
+
+void StreamRunner::request_layout() {
+  const std::lock_guard lock(mutex_);
+  layout_ = true;
+}
+
+void StreamRunner::set_emphasis(Emphasis emphasis) {
+  const std::lock_guard lock(mutex_);
+  emphasis_ = std::move(emphasis);
 }
 
 void StreamRunner::set_paused(bool paused) {
@@ -110,8 +121,10 @@ ViewRequest StreamRunner::make_request() {
   request.cover = cover_.cover();
   request.refresh = std::exchange(refresh_, false);
   request.restart = std::exchange(restart_, false);
+  request.layout = std::exchange(layout_, false);
   request.meta_codec = settings_.meta_codec;
   request.bit_rate = rate_.take();
+  request.emphasis = std::exchange(emphasis_, std::nullopt);
   return request;
 }
 
@@ -171,6 +184,7 @@ void StreamRunner::encode_loop() {
 
 void StreamRunner::encode_one(PreparedFrame prepared) {
   try {
+    if (prepared.layout && callbacks_.on_layout) callbacks_.on_layout(*prepared.layout);
     const Time start = steady_now();
     auto encoded = maker_->encode(std::move(prepared));
     if (!encoded) return fail(fmt::format("encoding failed: {}", encoded.error().message()));

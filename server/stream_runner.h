@@ -32,6 +32,7 @@ class StreamRunner {
     std::optional<BitRate> bit_rate;  ///< to hold at whatever frame rate comes about; nullopt: the stream's
     double encoder_fps = 15;          ///< the frame rate that the encoder was told
     std::optional<codec::MetaCodecKind> meta_codec;  ///< nullopt: the stream's
+    Emphasis emphasis;  ///< told with the first frame, since a warm stream may have another client's
   };
   struct Callbacks {
     /// Makes the stream, or hands out a warm one; called on the rendering thread. May throw.
@@ -40,6 +41,8 @@ class StreamRunner {
     std::function<void(FramePtr)> on_frame;
     /// The stream failed and makes no more frames; a runner's thread, once at most.
     std::function<void(std::string)> on_failure;
+    /// The picture that request_layout() asked for; encoding thread.
+    std::function<void(const render::Picture&)> on_layout;
     /// Gets the stream back when the runner ends unharmed; rendering thread, after the last frame.
     std::function<void(std::unique_ptr<FrameMaker>)> give_back;
   };
@@ -55,6 +58,10 @@ class StreamRunner {
   void request_refresh();
   /// The client knows nothing any more, or something wrong: the next frame tells all.
   void request_restart();
+  /// The next frame's layout goes to on_layout, if the stream follows it.
+  void request_layout();
+  /// From the next frame on.
+  void set_emphasis(Emphasis emphasis);
   /// Frames stop being started while paused.
   void set_paused(bool paused);
   void frame_taken();
@@ -86,6 +93,8 @@ class StreamRunner {
   bool paused_ = false;
   bool refresh_ = false;
   bool restart_ = true;
+  bool layout_ = false;
+  std::optional<Emphasis> emphasis_;  ///< not yet told to the stream
   bool failed_ = false;
   bool rendering_over_ = false;
   std::uint32_t in_encoder_ = 0;  ///< rendered and not yet encoded

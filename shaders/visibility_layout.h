@@ -65,11 +65,11 @@ struct LevelConstants {
   vec4 gaze;  // xyz: unit
 };
 
-/// A patch's corners in the position buffer, and how many triangles they make.
+/// A patch's corners in the position buffer, how many triangles they make, and where its priority is.
 struct PatchCorners {
   uint position[5];
   uint triangles;
-  float priority;  // octaves of area
+  uint surface[2];  // material and object: into the priorities, octaves of area that add up
 };
 
 /// A chunk that may be drawn: its box and its part of the index buffer.
@@ -96,7 +96,7 @@ static_assert(sizeof(ViewConstants) == 96 && offsetof(ViewConstants, camera_low)
 static_assert(sizeof(CullConstants) == 112 && offsetof(CullConstants, extent) == 96);
 static_assert(sizeof(GridConstants) == 16 && offsetof(GridConstants, coarse) == 8);
 static_assert(sizeof(LevelConstants) == 64 && offsetof(LevelConstants, pixels_per_radian) == 32);
-static_assert(sizeof(PatchCorners) == 28 && offsetof(PatchCorners, triangles) == 20);
+static_assert(sizeof(PatchCorners) == 32 && offsetof(PatchCorners, surface) == 24);
 static_assert(sizeof(ChunkCandidate) == 48 && offsetof(ChunkCandidate, index_count) == 32);
 static_assert(sizeof(DrawCommand) == 20 && offsetof(DrawCommand, first_instance) == 16);
 }  // namespace atlaswire::render::visibility

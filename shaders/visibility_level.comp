@@ -14,6 +14,7 @@ layout(set = 0, binding = 3, std430) readonly buffer Positions { float positions
 layout(set = 0, binding = 4, std430) readonly buffer Corners { PatchCorners corners[]; };
 layout(set = 0, binding = 5, std430) writeonly buffer Levels { uint levels[]; };
 layout(set = 0, binding = 6, std430) readonly buffer List { uint list[]; };
+layout(set = 0, binding = 7, std430) readonly buffer Priorities { float priorities[]; };
 
 vec3 scene_position(uint i) {
   return vec3(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
@@ -86,7 +87,7 @@ void main() {
   // more than four times the area, for long slivers show few pixels.
   float side_u = sqrt(area * max(width, 1e-15) / max(height, 1e-15));
   float side_v = area / max(side_u, 1e-15);
-  float bias = corners[patch_id].priority;
+  float bias = priorities[corners[patch_id].surface[0]] + priorities[corners[patch_id].surface[1]];
   if (level.foveation != 0.0) bias -= min(foveal_loss(p0), foveal_loss(p2));
   levels[patch_id] =
       pack_level(log2(min((side_u + 1.0) * (side_v + 1.0), 4.0 * max(area, 1e-30))) + bias,

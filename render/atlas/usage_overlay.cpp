@@ -46,6 +46,18 @@ void UsageOverlay::observe(const LayoutChange& change) {
   }
 }
 
+Picture UsageOverlay::picture(LayoutColours colours) const {
+  switch (colours) {
+    case LayoutColours::kLevel:
+      return by_level();
+    case LayoutColours::kAge:
+      return by_age();
+    case LayoutColours::kClass:
+      break;
+  }
+  return by_class();
+}
+
 Picture UsageOverlay::by_level() const {
   static constexpr std::array<Rgba8, 4> kHues{
       {{220, 60, 50, 255}, {230, 200, 60, 255}, {70, 180, 90, 255}, {60, 110, 220, 255}}};

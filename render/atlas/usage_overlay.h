@@ -8,6 +8,9 @@
 
 namespace atlaswire::render {
 
+/// What an overlay's colours tell.
+enum class LayoutColours : std::uint8_t { kClass, kLevel, kAge };
+
 /// Draws an atlas's memory, for people and reports: which blocks lie where, and since when.
 /// Texels outside blocks are dark; block edges are darker than their insides, and superblocks are outlined.
 class UsageOverlay {
@@ -18,6 +21,7 @@ class UsageOverlay {
   /// Follows one frame; every frame's change must come, in order.
   void observe(const LayoutChange& change);
 
+  [[nodiscard]] Picture picture(LayoutColours colours) const;
   /// Hue by area: red for the smallest blocks, then yellow, green and blue for the largest.
   [[nodiscard]] Picture by_level() const;
   /// White for blocks placed in the newest frame, cooling through red to blue after `old_frames` frames.

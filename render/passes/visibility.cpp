@@ -4,6 +4,7 @@
 #include "render/gpu/barriers.h"
 #include "render/passes/visibility_frustum.h"
 #include "render/relative_camera.h"
+#include "render/scene/surface_priorities.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,15 @@ VisibilityPass::VisibilityPass(Device& device, const SceneGpu& scene, const Visi
   sets_.write(0, 4, geometry_.corners);
   sets_.write(0, 5, geometry_.levels);
   sets_.write(0, 6, geometry_.list);
+  sets_.write(0, 7, geometry_.priorities);
+  set_emphasis({});
+}
+
+void VisibilityPass::set_emphasis(const Emphasis& emphasis) {
+  foveation_ = emphasis.foveation.value_or(0);
+  const std::vector<float> octaves = surface_priorities(scene_->scene(), emphasis);
+  std::ranges::copy(octaves, geometry_.priorities.mapped<float>().begin());
+  geometry_.priorities.flush();
 }
 
 void VisibilityPass::make_targets(Extent2D extent) {
@@ -206,7 +216,7 @@ void VisibilityPass::record_levels(const vk::raii::CommandBuffer& commands, cons
   visibility::LevelConstants constants{.camera_high = {},
                                        .camera_low = {},
                                        .pixels_per_radian = static_cast<float>(pixels_per_radian(camera)),
-                                       .foveation = static_cast<float>(settings_.foveation),
+                                       .foveation = static_cast<float>(foveation_),
                                        .foveal_angle = std::numbers::pi_v<float> / 18,
                                        .padding = {},
                                        .gaze = {}};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/emphasis.h"
 #include "render/camera.h"
 #include "render/gpu/buffer.h"
 #include "render/gpu/descriptors.h"
@@ -24,10 +25,7 @@ struct VisibilitySettings {
   double fov_scale = 1.2;       ///< >= 1; room for rotation against larger visible sets
   double id_scale = 1.0;        ///< > 0; id pixels per display pixel along a side
   std::uint32_t max_views = 2;  ///< >= 1; poses a frame
-  /// Octaves of atlas area that surfaces lose per radian away from the view axis, 10 degrees around it
-  /// excepted ([SAS] 4.3); 0: none.
-  double foveation = 0;
-  bool occlusion = true;  ///< drop hidden chunks before their vertices are transformed; same picture
+  bool occlusion = true;        ///< drop hidden chunks before their vertices are transformed; same picture
 };
 
 /// What one frame's recording amounts to.
@@ -52,6 +50,11 @@ class VisibilityPass {
   /// Records one frame: what any of `poses` (1 to max_views of them) sees, sized for `camera`. All that was
   /// recorded before must have finished on the device.
   void record(const vk::raii::CommandBuffer& commands, const Camera& camera, std::span<const Pose> poses);
+
+  /// From the next record() on: priorities add to what surfaces want, and foveation takes from it, 10 degrees
+  /// around the view axis excepted ([SAS] 4.3). At first: the scene's own priorities, no foveation. All that
+  /// was recorded before must have finished on the device.
+  void set_emphasis(const Emphasis& emphasis);
 
   /// One word a patch (shaders/level_layout.h), after the recorded work has been waited for.
   [[nodiscard]] std::span<const std::uint32_t> levels() const;
@@ -86,6 +89,7 @@ class VisibilityPass {
   std::vector<bool> known_;  ///< by chunk: drawn without a test
   std::unique_ptr<Image> ids_;
   std::unique_ptr<Image> depth_;
+  double foveation_ = 0;
   VisibilityStats stats_;
 };
 

@@ -23,7 +23,8 @@ std::vector<visibility::PatchCorners> patch_corners(const Scene& scene) {
     visibility::PatchCorners& next = corners.emplace_back();
     std::ranges::transform(patch.positions, next.position, [](VertexId id) { return value(id); });
     next.triangles = patch.triangles;
-    next.priority = scene.materials[patch.material].atlas_priority;
+    next.surface[0] = patch.material;
+    next.surface[1] = static_cast<std::uint32_t>(scene.materials.size()) + patch.object;
   }
   return corners;
 }
@@ -65,6 +66,11 @@ VisibilityGeometry::VisibilityGeometry(Device& device, const Scene& scene, const
       list(device_buffer(device, "visible patches",
                          (visibility::kListHeader + scene.patches.size()) * sizeof(std::uint32_t),
                          Usage::eStorageBuffer | Usage::eIndirectBuffer)),
+      priorities(device, {.name = "surface priorities",
+                          .size = (scene.materials.size() + std::max<std::size_t>(1, scene.objects.size())) *
+                                  sizeof(float),
+                          .usage = Usage::eStorageBuffer,
+                          .residence = Residence::kUpload}),
       levels(device, {.name = "patch levels",
                       .size = scene.patches.size() * sizeof(std::uint32_t),
                       .usage = Usage::eStorageBuffer | Usage::eTransferDst,
@@ -79,6 +85,8 @@ VisibilityGeometry::VisibilityGeometry(Device& device, const Scene& scene, const
     commands.fillBuffer(marks.handle(), 0, VK_WHOLE_SIZE, 0);
     transfer_to_shaders(commands);
   });
+  std::ranges::fill(priorities.mapped<float>(), 0.0F);
+  priorities.flush();
   std::ranges::fill(levels.mapped<std::uint32_t>(), 0U);
   levels.flush();
 }

@@ -13,14 +13,15 @@ struct VisibilityGeometry {
 
   VisibilityGeometry(Device& device, const Scene& scene, const IdMesh& mesh);
 
-  Buffer solid;      ///< IdMesh
-  Buffer cut;        ///< IdMesh
-  Buffer indices;    ///< IdMesh
-  Buffer positions;  ///< Scene::positions, 3 floats each
-  Buffer corners;    ///< visibility::PatchCorners by patch
-  Buffer marks;      ///< a word a patch: not 0 if seen in this frame; 0 between frames
-  Buffer list;       ///< visibility::kListHeader words, then the marked patches in no order
-  Buffer levels;     ///< a word a patch, for the host
+  Buffer solid;       ///< IdMesh
+  Buffer cut;         ///< IdMesh
+  Buffer indices;     ///< IdMesh
+  Buffer positions;   ///< Scene::positions, 3 floats each
+  Buffer corners;     ///< visibility::PatchCorners by patch
+  Buffer marks;       ///< a word a patch: not 0 if seen in this frame; 0 between frames
+  Buffer list;        ///< visibility::kListHeader words, then the marked patches in no order
+  Buffer priorities;  ///< surface_priorities, written by the host; 0 at first
+  Buffer levels;      ///< a word a patch, for the host
 };
 
 }  // namespace atlaswire::render

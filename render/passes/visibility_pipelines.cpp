@@ -60,7 +60,8 @@ std::vector<Binding> visibility_bindings() {
           {.binding = 3, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
           {.binding = 4, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
           {.binding = 5, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
-          {.binding = 6, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute}};
+          {.binding = 6, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute},
+          {.binding = 7, .type = Type::eStorageBuffer, .stages = Stage::eCompute}};
 }
 
 VisibilityPipelines::VisibilityPipelines(const Device& device, const SceneGpu& scene,

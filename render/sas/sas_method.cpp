@@ -22,10 +22,7 @@ MethodSettings checked(MethodSettings settings) {
 
 VisibilitySettings visibility_settings(const MethodSettings& s) {
   constexpr std::uint32_t kEyes = 2;
-  return {.fov_scale = s.fov_scale,
-          .id_scale = s.id_scale,
-          .max_views = kEyes * s.max_views,
-          .foveation = s.foveation};
+  return {.fov_scale = s.fov_scale, .id_scale = s.id_scale, .max_views = kEyes * s.max_views};
 }
 
 /// Where the visible sets that the frame unites are seen from.
@@ -87,7 +84,9 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
                   settings_.frames_in_flight),
       timer_(device, "sas timer", 2),
       context_(device, "sas"),
-      chunk_of_patch_(chunks_of_patches(*scene_)) {}
+      chunk_of_patch_(chunks_of_patches(*scene_)) {
+  visibility_.set_emphasis(settings_.emphasis);
+}
 
 RenderedFrame SasMethod::render(const FrameRequest& request) {
   RenderedFrame frame{.frame = request.frame};

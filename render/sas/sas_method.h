@@ -28,6 +28,7 @@ class SasMethod final : public Method {
 
   [[nodiscard]] Extent2D picture_extent() const override { return conversion_.picture_extent(); }
   RenderedFrame render(const FrameRequest& request) override;
+  void set_emphasis(const Emphasis& emphasis) override { visibility_.set_emphasis(emphasis); }
   [[nodiscard]] bool wants_intra() const override { return planner_->allocator().wants_reset(); }
   [[nodiscard]] std::optional<AllocatorSettings> memory() const override { return settings_.allocator; }
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return planner_->allocator().blocks(); }

@@ -25,6 +25,7 @@ void renumber_vertices(const FlatMesh& flat, const std::vector<TriangleGroup>& g
     const TriangleGroup& group = groups[s.group];
     Patch patch;
     patch.material = s.material;
+    patch.object = flat.objects[group.triangle];
     patch.triangles = group.count;
     for (std::size_t c = 0; c < kMaxPatchCorners; ++c) {
       std::uint32_t& number = numbers[group.corners[c]];
@@ -150,6 +151,7 @@ Result<Scene> assemble(SceneSource source, const AssembleSettings& settings) {
   scene.origin = flat.origin;
   scene.box = flat.box;
   scene.materials = std::move(source.materials);
+  scene.objects = std::move(source.objects);
   scene.textures = std::move(source.textures);
   scene.sun = source.sun;
   scene.ambient_up = source.ambient_up;

@@ -137,6 +137,7 @@ class Flattener {
       }
       out_.indices.insert(out_.indices.end(), {a, b, c});
       out_.materials.push_back(mesh.material);
+      out_.objects.push_back(instance.object);
     }
   }
 

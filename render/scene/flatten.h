@@ -15,6 +15,7 @@ struct FlatMesh {
   std::vector<ShadingVertex> vertices;
   std::vector<std::uint32_t> indices;    ///< 3 a triangle; none degenerate
   std::vector<std::uint16_t> materials;  ///< by triangle
+  std::vector<std::uint32_t> objects;    ///< by triangle
   std::uint32_t degenerate_triangles = 0;
 };
 

@@ -16,7 +16,9 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 namespace atlaswire::render {
 
@@ -53,7 +55,7 @@ class Reader {
     meshes_.resize(model_.meshes.size());
     visited_.resize(model_.nodes.size(), false);
     for (const int root : roots()) {
-      if (auto error = visit(root, glm::dmat4(1.0), 0)) return *error;
+      if (auto error = visit(root, glm::dmat4(1.0), {}, 0)) return *error;
     }
     if (out_.instances.empty()) return Error{SceneError::kEmpty, "no mesh in the scene's nodes"};
     if (moves()) {
@@ -85,7 +87,8 @@ class Reader {
     return out;
   }
 
-  std::optional<Error> visit(int index, const glm::dmat4& parent, int depth) {
+  /// `object`: name and priority that the nodes above it give.
+  std::optional<Error> visit(int index, const glm::dmat4& parent, SceneObject object, int depth) {
     if (index < 0 || static_cast<std::size_t>(index) >= model_.nodes.size()) {
       return Error{SceneError::kIndexOutOfRange, "node " + std::to_string(index)};
     }
@@ -97,9 +100,11 @@ class Reader {
     visited_[static_cast<std::size_t>(index)] = true;
     const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
     const glm::dmat4 to_scene = parent * local_transform(node);
+    if (!node.name.empty()) object.name = node.name;
+    object.atlas_priority = atlas_priority(node.extras).value_or(object.atlas_priority);
     if (node.mesh >= 0) {
-      if (auto error = place_mesh(node.mesh, to_scene, {static_cast<std::uint32_t>(index), node.skin}))
-        return error;
+      const RigInstance by{static_cast<std::uint32_t>(index), node.skin};
+      if (auto error = place_mesh(node.mesh, to_scene, object, by)) return error;
     }
     const glm::dvec3 place(to_scene[3]);
     if (!std::isfinite(place.x + place.y + place.z)) {
@@ -110,7 +115,7 @@ class Reader {
       if (auto error = place_light(light->second, to_scene)) return error;
     }
     for (const int child : node.children) {
-      if (auto error = visit(child, to_scene, depth + 1)) return error;
+      if (auto error = visit(child, to_scene, object, depth + 1)) return error;
     }
     return std::nullopt;
   }
@@ -159,7 +164,16 @@ class Reader {
     if (glm::dot(color, color) > glm::dot(out_.sun.color, out_.sun.color)) out_.sun = {forward, color};
   }
 
-  std::optional<Error> place_mesh(int index, const glm::dmat4& to_scene, const RigInstance& by) {
+  /// Objects that are alike are one.
+  std::uint32_t number_of(const SceneObject& object) {
+    const auto [at, is_new] = objects_.try_emplace({object.name, object.atlas_priority},
+                                                   static_cast<std::uint32_t>(out_.objects.size()));
+    if (is_new) out_.objects.push_back(object);
+    return at->second;
+  }
+
+  std::optional<Error> place_mesh(int index, const glm::dmat4& to_scene, SceneObject object,
+                                  const RigInstance& by) {
     if (static_cast<std::size_t>(index) >= model_.meshes.size())
       return Error{SceneError::kIndexOutOfRange, "mesh " + std::to_string(index)};
     auto& made = meshes_[static_cast<std::size_t>(index)];
@@ -180,8 +194,10 @@ class Reader {
         out_.meshes.push_back(std::move(*mesh));
       }
     }
+    if (object.name.empty()) object.name = model_.meshes[static_cast<std::size_t>(index)].name;
+    const std::uint32_t number = number_of(object);
     for (const std::uint32_t mesh : made) {
-      out_.instances.push_back({mesh, to_scene});
+      out_.instances.push_back({mesh, to_scene, number});
       if (moves()) out_.rig.instances.push_back(by);
     }
     return std::nullopt;
@@ -278,6 +294,7 @@ class Reader {
   const tinygltf::Model& model_;
   SceneSource& out_;
   std::vector<std::vector<std::uint32_t>> meshes_;  ///< made of each of the file's, once placed
+  std::map<std::pair<std::string, float>, std::uint32_t> objects_;
   std::vector<bool> visited_;
   bool has_camera_ = false;
   int ignored_suns_ = 0;

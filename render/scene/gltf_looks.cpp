@@ -34,14 +34,6 @@ class Looks {
   }
 
  private:
-  /// "extras": {"atlas_priority": OCTAVES}; 0 where it is absent or no number.
-  static float priority(const tinygltf::Material& in) {
-    if (!in.extras.IsObject() || !in.extras.Has("atlas_priority")) return 0.0F;
-    const tinygltf::Value& value = in.extras.Get("atlas_priority");
-    const double octaves = value.IsNumber() ? value.GetNumberAsDouble() : 0.0;
-    return static_cast<float>(std::isfinite(octaves) ? std::clamp(octaves, -8.0, 8.0) : 0.0);
-  }
-
   std::optional<Error> read_material(const tinygltf::Material& in) {
     Material out;
     out.name = in.name;
@@ -59,7 +51,7 @@ class Looks {
     if (in.alphaMode == "MASK") out.draw.alpha = PatchClass::Alpha::kMask;
     if (in.alphaMode == "BLEND") out.draw.alpha = PatchClass::Alpha::kBlend;
     out.alpha_cutoff = unit(in.alphaCutoff);
-    out.atlas_priority = priority(in);
+    out.atlas_priority = atlas_priority(in.extras).value_or(0.0F);
     const struct {
       int index;
       int uv_set;
@@ -160,6 +152,13 @@ class Looks {
 };
 
 }  // namespace
+
+std::optional<float> atlas_priority(const tinygltf::Value& extras) {
+  if (!extras.IsObject() || !extras.Has("atlas_priority")) return std::nullopt;
+  const tinygltf::Value& value = extras.Get("atlas_priority");
+  if (!value.IsNumber() || !std::isfinite(value.GetNumberAsDouble())) return std::nullopt;
+  return static_cast<float>(std::clamp(value.GetNumberAsDouble(), -8.0, 8.0));
+}
 
 Result<void> read_materials(const tinygltf::Model& model, SceneSource& source) {
   return Looks(model, source).read();

@@ -49,6 +49,13 @@ struct Material {
   std::int32_t emissive_texture = kNoTexture;
 };
 
+/// A named part of a scene file: what its nodes' meshes show.
+struct SceneObject {
+  std::string name;             ///< of the node, or the nearest above it that has one, else of the mesh
+  float atlas_priority = 0.0F;  ///< as Material::atlas_priority, and added to it
+  bool operator==(const SceneObject&) const = default;
+};
+
 /// What shading interpolates. Positions are relative to Scene::origin.
 struct ShadingVertex {
   glm::vec3 position;
@@ -69,6 +76,7 @@ std::uint32_t pack_tangent(const glm::vec3& t, bool negative_handed);
 struct Patch {
   std::array<std::uint32_t, kMaxPatchCorners> vertices{};  ///< into Scene::vertices; the rest repeat the last
   std::array<VertexId, kMaxPatchCorners> positions{};  ///< into Scene::positions; the rest repeat the last
+  std::uint32_t object = 0;  ///< into Scene::objects, unless there are none: that of its lowest triangle
   std::uint16_t material = 0;
   std::uint8_t triangles = 1;
 };
@@ -121,6 +129,7 @@ struct Scene {
   std::vector<std::uint32_t> triangle_patch;  ///< patch of each triangle in `indices`
   std::vector<Chunk> chunks;                  ///< in patch order, covering all
   std::vector<Material> materials;
+  std::vector<SceneObject> objects;
   std::vector<Texture> textures;
   std::vector<PunctualLight> lights;
   std::vector<std::uint32_t> light_lists;  ///< lights that reach each chunk

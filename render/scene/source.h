@@ -31,6 +31,7 @@ struct SourceMesh {
 struct SourceInstance {
   std::uint32_t mesh = 0;
   glm::dmat4 to_scene{1.0};
+  std::uint32_t object = 0;  ///< into SceneSource::objects, unless there are none
 };
 
 /// A light before the scene's origin is known.
@@ -45,6 +46,7 @@ struct SceneSource {
   std::vector<SourceMesh> meshes;
   std::vector<SourceInstance> instances;
   std::vector<Material> materials;
+  std::vector<SceneObject> objects;
   std::vector<Texture> textures;
   std::vector<SourceLight> lights;
   Sun sun;

@@ -30,6 +30,7 @@ class VideoMethod final : public Method {
   [[nodiscard]] Extent2D picture_extent() const override { return conversion_.picture_extent(); }
   /// The request's camera has the extent VideoSettings::display.
   RenderedFrame render(const FrameRequest& request) override;
+  void set_emphasis(const Emphasis& /*emphasis*/) override {}
   [[nodiscard]] bool wants_intra() const override { return false; }
   [[nodiscard]] std::optional<AllocatorSettings> memory() const override { return std::nullopt; }
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return {}; }

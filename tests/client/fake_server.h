@@ -40,6 +40,7 @@ class FakeServer {
   std::vector<StampedPose> poses;  ///< newest of each packet
   std::vector<proto::StatsReport> reports;
   std::vector<proto::RestartRequest> restarts;
+  std::vector<Emphasis> emphases;
   std::optional<proto::Goodbye> goodbye;
   int refresh_requests = 0;
   int receiver_reports = 0;
@@ -132,6 +133,7 @@ class FakeServer {
     }
     if (const auto* r = std::get_if<proto::StatsReport>(&message)) reports.push_back(*r);
     if (const auto* r = std::get_if<proto::RestartRequest>(&message)) restarts.push_back(*r);
+    if (const auto* e = std::get_if<Emphasis>(&message)) emphases.push_back(*e);
     if (const auto* g = std::get_if<proto::Goodbye>(&message)) goodbye = *g;
   }
 

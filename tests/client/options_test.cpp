@@ -40,6 +40,17 @@ TEST(ClientOptions, HaveWorkingDefaults) {
   EXPECT_EQ(s.lens, render::LensCorrection{});
 }
 
+TEST(ClientOptions, EmphasisIsAWishOnlyWhereItIsSaid) {
+  EXPECT_FALSE(parse({}).settings.emphasis);
+  const ClientSettings s =
+      parse({"--priority", "lamp=2", "--priority", "floor=-1", "--emphasis-after", "3"}).settings;
+  EXPECT_EQ(s.emphasis, (Emphasis{.priorities = {{"lamp", 2}, {"floor", -1}}}));
+  EXPECT_EQ(s.emphasis_after, std::chrono::seconds(3));
+  EXPECT_EQ(parse({"--foveation", "0"}).settings.emphasis, Emphasis{.foveation = 0.0});
+  expect_refused({"--foveation", "8.5"}, "--foveation 8.5: must be 0..8");
+  expect_refused({"--priority", "lamp=9"}, "--priority lamp=9: must be NAME=OCTAVES");
+}
+
 TEST(ClientOptions, ReadEverythingFromTheCommandLine) {
   const ClientSettings s = parse({"--connect",
                                   "[::1]:99",

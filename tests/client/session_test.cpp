@@ -315,6 +315,34 @@ TEST(Session, GarbageDoesNotKeepADeadServerAlive) {
   expect_end(w, Kind::kServerGone, "nothing came");
 }
 
+TEST(Session, SaysItsEmphasisWhenItIsDueAndEachNewOneOnce) {
+  SessionSettings settings;
+  settings.emphasis = Emphasis{.foveation = 1.5};
+  settings.emphasis_after = seconds(1);
+  World w(settings);
+  w.run(milliseconds(900));
+  EXPECT_TRUE(w.server.emphases.empty());
+  w.run(milliseconds(200));
+  ASSERT_EQ(w.server.emphases.size(), 1U);
+  EXPECT_EQ(w.server.emphases[0], settings.emphasis);
+  w.session.set_emphasis({.priorities = {{"lamp", 2}}}, w.now());
+  w.run(milliseconds(100));
+  ASSERT_EQ(w.server.emphases.size(), 2U);
+  EXPECT_EQ(w.server.emphases[1], (Emphasis{.priorities = {{"lamp", 2}}}));
+  w.run(seconds(2));
+  EXPECT_EQ(w.server.emphases.size(), 2U);
+  EXPECT_FALSE(w.stuck);
+  EXPECT_FALSE(w.session.end());
+}
+
+TEST(Session, AnEmphasisSetBeforeTheHandshakeWaitsForIt) {
+  World w;
+  w.session.set_emphasis({.foveation = 0.5}, w.now());
+  w.run(seconds(1));
+  ASSERT_EQ(w.server.emphases.size(), 1U);
+  EXPECT_FALSE(w.stuck);
+}
+
 TEST(Session, SurvivesEveryTruncationOfTheServersFirstWords) {
   ByteBuffer bytes;
   proto::append_message(FakeServer::default_answer(), bytes);

@@ -179,6 +179,22 @@ TEST(Messages, GoldenBytesOfAFrameMeta) {
             "4a02abcd");  // cover 5, meta
 }
 
+TEST(Messages, EmphasisComesBackAsSent) {
+  EXPECT_EQ(round_trip_of(Emphasis{}), Emphasis{});
+  const Emphasis zero{.foveation = 0.0};
+  EXPECT_EQ(round_trip_of(zero), zero) << "0 is not absent";
+  Emphasis full{.foveation = 8.0};
+  for (std::size_t i = 0; i < Emphasis::kMostPriorities; ++i) {
+    full.priorities.push_back({std::string(Emphasis::kMostName, 'n'), -8});
+  }
+  EXPECT_EQ(round_trip_of(full), full);
+}
+
+TEST(Messages, GoldenBytesOfAnEmphasis) {
+  const Emphasis m{.foveation = 1.5, .priorities = {{"lamp", -2}}};
+  EXPECT_EQ(octets_of(m), test::from_hex("421a 09 000000000000f83f 120f 0a04 6c616d70 11 00000000000000c0"));
+}
+
 TEST(Messages, GoldenBytesOfARefusal) {
   ByteBuffer out;
   append_message(Refusal{Refusal::Code::kVersion, "no"}, out);
@@ -287,8 +303,28 @@ TEST(ParseEnvelope, RefusesOtherBadMessages) {
                  [](wire::Envelope& e) { e.mutable_stats_report()->set_display_rate(kInf); });
 }
 
+TEST(ParseEnvelope, RefusesBadEmphases) {
+  const auto check = [](const char* field, auto spoil) {
+    expect_refused(Emphasis{.foveation = 1.0, .priorities = {{"lamp", 2}}}, field,
+                   [&](wire::Envelope& e) { spoil(*e.mutable_emphasis()); });
+  };
+  check("emphasis.foveation", [](auto& m) { m.set_foveation(8.01); });
+  check("emphasis.foveation", [](auto& m) { m.set_foveation(kNaN); });
+  check("emphasis.foveation", [](auto& m) { m.set_foveation(-0.1); });
+  check("emphasis.priorities.surface", [](auto& m) { m.mutable_priorities(0)->clear_surface(); });
+  check("emphasis.priorities.surface", [](auto& m) { m.mutable_priorities(0)->set_surface("two\nlines"); });
+  check("emphasis.priorities.surface",
+        [](auto& m) { m.mutable_priorities(0)->set_surface(std::string(129, 'x')); });
+  check("emphasis.priorities.octaves", [](auto& m) { m.mutable_priorities(0)->set_octaves(-8.01); });
+  check("emphasis.priorities.octaves", [](auto& m) { m.mutable_priorities(0)->set_octaves(kNaN); });
+  check("emphasis.priorities", [](auto& m) {
+    while (m.priorities_size() <= 256) *m.add_priorities() = m.priorities(0);
+  });
+}
+
 TEST(ParseEnvelope, SurvivesEveryDamage) {
-  for (const Message& message : {Message{hello()}, Message{answer()}, Message{FrameMeta{}}}) {
+  for (const Message& message : {Message{hello()}, Message{answer()}, Message{FrameMeta{}},
+                                 Message{Emphasis{.foveation = 1.5, .priorities = {{"lamp", -2}}}}}) {
     test::for_each_damage(octets_of(message), [](const ByteBuffer& bytes) {
       const auto result = parse_message(bytes);
       if (result.has_value()) {  // what passes must be sendable again

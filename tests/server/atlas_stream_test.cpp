@@ -169,6 +169,41 @@ TEST_F(AtlasStreamTest, AMirrorShowsWhatItIsNotTold) {
   }
 }
 
+TEST_F(AtlasStreamTest, AnEmphasisCountsFromItsFrameOnUntilTheNext) {
+  const auto stream = make_stream();
+  const auto allocated = [&] {
+    const auto frame = stream->encode(stream->render(request)).value();
+    request.emphasis.reset();
+    return frame.report.usage.allocated;
+  };
+  const auto before = allocated();
+  Emphasis& emphasis = request.emphasis.emplace();
+  for (const auto& material : scene->materials) emphasis.priorities.push_back({material.name, -8});
+  EXPECT_LT(allocated(), before / 2);
+  EXPECT_LT(allocated(), before / 2);
+  request.emphasis.emplace();
+  for (int frame = 0; frame < 30; ++frame) allocated();  // the bias falls slowly
+  EXPECT_GT(allocated(), before / 2);
+}
+
+TEST_F(AtlasStreamTest, DrawsItsLayoutWhenAskedIfItFollowsIt) {
+  request.layout = true;
+  const auto blind = make_stream();
+  PreparedFrame without = blind->render(request);
+  EXPECT_FALSE(without.layout);
+  ASSERT_TRUE(blind->encode(std::move(without)));
+  settings.layout_colours = render::LayoutColours::kLevel;
+  const auto stream = make_stream();
+  PreparedFrame with = stream->render(request);
+  ASSERT_TRUE(with.layout);
+  EXPECT_EQ(with.layout->extent, settings.render.atlas);
+  ASSERT_TRUE(stream->encode(std::move(with)));
+  request.layout = false;
+  PreparedFrame unasked = stream->render(request);
+  EXPECT_FALSE(unasked.layout);
+  ASSERT_TRUE(stream->encode(std::move(unasked)));
+}
+
 TEST_F(AtlasStreamTest, RefreshBringsAnEarlyIntraFrame) {
   const auto stream = make_stream();
   std::string kinds;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <future>
 #include <memory>
 #include <thread>
@@ -14,14 +15,15 @@ namespace atlaswire::server {
 /// A daemon on a free loopback port, served by a thread of its own.
 class RunningDaemon {
  public:
-  RunningDaemon(DaemonSettings settings, StreamSource& source) {
+  RunningDaemon(DaemonSettings settings, StreamSource& source, const std::function<Emphasis()>& reread = {}) {
     settings.port = 0;
     settings.stats_interval = Duration{0};
     daemon_ = std::make_unique<Daemon>(settings);
     std::promise<void> ready;
     auto listening = ready.get_future();
-    thread_ =
-        std::thread([this, &source, &ready] { daemon_->serve(source, [&ready] { ready.set_value(); }); });
+    thread_ = std::thread([this, &source, &ready, reread] {
+      daemon_->serve(source, {.on_ready = [&ready] { ready.set_value(); }, .reread = reread});
+    });
     listening.get();
   }
   ~RunningDaemon() { stop(); }
@@ -33,6 +35,8 @@ class RunningDaemon {
     thread_.join();
   }
   void request_stop() { daemon_->stop(); }
+  void reload() { daemon_->reload(); }
+  void draw_layout() { daemon_->draw_layout(); }
   [[nodiscard]] std::uint16_t port() const { return daemon_->port(); }
 
  private:

@@ -2,6 +2,7 @@
 
 #include "base/program.h"
 #include "proto/rtp.h"
+#include "render/image/png.h"
 #include "tests/server/daemon_fixture.h"
 #include "tests/server/fake_stream.h"
 
@@ -12,7 +13,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -144,6 +147,62 @@ TEST(Daemon, PictureLossBringsAnIntraFrame) {
   client.lose_picture();
   ASSERT_TRUE(client.run_until([&] { return source.watch.rendered >= rendered + 10; }, 20s));
   EXPECT_GE(source.watch.intra - intra, 3U) << "two by rule in ten frames, one for the loss";
+}
+
+TEST(Daemon, AClientsEmphasisReachesItsStreamOverTheOperators) {
+  FakeSource source;
+  auto settings = quick_settings();
+  settings.stream.render.emphasis = {.foveation = 0.5, .priorities = {{"floor", -1}}};
+  RunningDaemon daemon(settings, source);
+  RawClient client(daemon.port());
+  ASSERT_TRUE(client.run_until_frames(2, 20s));
+  EXPECT_EQ(source.watch.foveation, 0.5);
+  EXPECT_EQ(source.watch.emphases, 1U) << "told with the first frame only";
+  client.send(Emphasis{.priorities = {{"lamp", 3}}});
+  ASSERT_TRUE(client.run_until([&] { return source.watch.priorities == 2U; }, 20s));
+  EXPECT_EQ(source.watch.foveation, 0.5) << "no opinion leaves the operator's";
+  client.send(Emphasis{.foveation = 2.0});
+  ASSERT_TRUE(client.run_until([&] { return source.watch.foveation == 2.0; }, 20s));
+  EXPECT_EQ(source.watch.priorities, 1U) << "the one before is gone as a whole";
+  EXPECT_FALSE(client.is_closed());
+}
+
+TEST(Daemon, ReloadsTheOperatorsEmphasisIntoRunningStreams) {
+  FakeSource source;
+  std::atomic<int> calls{0};
+  RunningDaemon daemon(quick_settings(), source, [&]() -> Emphasis {
+    if (++calls == 1) return {.foveation = 3.0};
+    throw ProgramError(ExitCode::kUsage, "--foveation 9: must be 0..8");
+  });
+  RawClient client(daemon.port());
+  ASSERT_TRUE(client.run_until_frames(2, 20s));
+  client.send(Emphasis{.priorities = {{"lamp", 3}}});
+  daemon.reload();
+  ASSERT_TRUE(
+      client.run_until([&] { return source.watch.foveation == 3.0 && source.watch.priorities == 1U; }, 20s));
+  daemon.reload();
+  ASSERT_TRUE(client.run_until([&] { return calls == 2; }, 20s));
+  const auto frames = client.paired();
+  ASSERT_TRUE(client.run_until_frames(frames + 2, 20s)) << "a bad file leaves everything as it is";
+  EXPECT_EQ(source.watch.foveation, 3.0);
+}
+
+TEST(Daemon, DrawsTheLayoutOfARunningStreamWhenAsked) {
+  FakeSource source;
+  auto settings = quick_settings();
+  settings.layout_picture = ::testing::TempDir() + "daemon_test_layout.png";
+  std::filesystem::remove(settings.layout_picture);
+  RunningDaemon daemon(settings, source);
+  daemon.draw_layout();  // nobody streams: a warning
+  RawClient client(daemon.port());
+  ASSERT_TRUE(client.run_until_frames(2, 20s));
+  EXPECT_FALSE(std::filesystem::exists(settings.layout_picture));
+  daemon.draw_layout();
+  ASSERT_TRUE(client.run_until([&] { return std::filesystem::exists(settings.layout_picture); }, 20s));
+  const auto drawn = render::read_png(settings.layout_picture);
+  ASSERT_TRUE(drawn.has_value());
+  EXPECT_EQ(drawn->extent, (Extent2D{8, 8}));
+  std::filesystem::remove(settings.layout_picture);
 }
 
 TEST(Daemon, DrainSaysGoodbyeToAll) {

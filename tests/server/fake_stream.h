@@ -22,6 +22,9 @@ class FakeStream final : public FrameMaker {
     std::atomic<std::uint32_t> restarts{0};
     std::atomic<bool> order_broken{false};
     std::atomic<double> eye_separation{0};  ///< that the last frame was asked for
+    std::atomic<double> foveation{-1};      ///< that the last emphasis asked for; -2: it did not say
+    std::atomic<std::size_t> priorities{0};
+    std::atomic<std::uint32_t> emphases{0};
     std::atomic<std::uint32_t> fail_render_at{~0U};
     std::atomic<std::uint32_t> fail_encode_at{~0U};
   };
@@ -38,6 +41,12 @@ class FakeStream final : public FrameMaker {
     prepared.intra = request.restart || request.refresh || n % 5 == 0;
     prepared.rendered.frame = FrameId{n};
     watch_.eye_separation = request.hints.eye_separation;
+    if (request.emphasis) {
+      watch_.foveation = request.emphasis->foveation.value_or(-2);
+      watch_.priorities = request.emphasis->priorities.size();
+      ++watch_.emphases;
+    }
+    if (request.layout) prepared.layout.emplace(Extent2D{8, 8}, render::Rgba8{1, 2, 3, 255});
     ++watch_.rendered;
     if (prepared.intra) ++watch_.intra;
     if (request.restart) ++watch_.restarts;

@@ -64,6 +64,16 @@ TEST(Options, MapEveryKindOfValue) {
                         "device",
                         "--level-hysteresis",
                         "0.5",
+                        "--foveation",
+                        "1.5",
+                        "--priority",
+                        "lamp=2",
+                        "--priority",
+                        "floor=-1",
+                        "--layout-picture",
+                        "l.png",
+                        "--layout-colours",
+                        "age",
                         "--log-level",
                         "debug"})
                      .settings;
@@ -82,6 +92,10 @@ TEST(Options, MapEveryKindOfValue) {
   EXPECT_EQ(s.stream.render.reshade_interval, 4U);
   EXPECT_EQ(s.stream.render.allocator_kind, render::AllocatorKind::kDevice);
   EXPECT_EQ(s.stream.render.level_hysteresis, 0.5);
+  EXPECT_EQ(s.stream.render.emphasis,
+            (Emphasis{.foveation = 1.5, .priorities = {{"lamp", 2}, {"floor", -1}}}));
+  EXPECT_EQ(s.layout_picture, "l.png");
+  EXPECT_EQ(s.stream.layout_colours, render::LayoutColours::kAge);
   EXPECT_EQ(s.log.level, spdlog::level::debug);
 }
 
@@ -93,6 +107,9 @@ TEST(Options, RefusalsNameOptionValueAndCure) {
   EXPECT_THAT(refusal({"--fov-scale", "0.5"}), HasSubstr("--fov-scale 0.5: must be 1..2"));
   EXPECT_THAT(refusal({"--fov-scale", "nan"}), HasSubstr("--fov-scale nan"));
   EXPECT_THAT(refusal({"--allocator", "gpu"}), HasSubstr("auto, device or sequential"));
+  EXPECT_THAT(refusal({"--foveation", "9"}), HasSubstr("--foveation 9: must be 0..8"));
+  EXPECT_THAT(refusal({"--priority", "lamp"}), HasSubstr("--priority lamp: must be NAME=OCTAVES"));
+  EXPECT_THAT(refusal({"--layout-colours", "red"}), HasSubstr("class, level or age"));
   EXPECT_THAT(refusal({"--method", "video"}), HasSubstr("--method video: must be sas"));
   EXPECT_THAT(refusal({"--port", "70000"}), HasSubstr("--port 70000: must be 0..65535"));
   EXPECT_THAT(refusal({"--grid-bits", "21"}), HasSubstr("--grid-bits 21: must be 8..20"));
@@ -117,11 +134,15 @@ TEST(Options, HelpAndVersionArePrinted) {
 
 TEST(Options, ConfigFileSetsAndCommandLineWins) {
   const std::string file = ::testing::TempDir() + "atlasd_options_test.toml";
-  std::ofstream(file) << "scene = \"town.glb\"\natlas = \"512x512\"\nvalidation = true\nfps = 20\n";
+  std::ofstream(file) << "scene = \"town.glb\"\natlas = \"512x512\"\nvalidation = true\nfps = 20\n"
+                      << "priority = [\"lamp=2\", \"floor=-1\"]\n";
   const auto s = parse({"--config", file.c_str(), "--fps", "25"}).settings;
   EXPECT_EQ(s.scene, "town.glb");
   EXPECT_EQ(s.stream.render.atlas, (Extent2D{512, 512}));
   EXPECT_TRUE(s.validation);
+  EXPECT_EQ(s.stream.render.emphasis.priorities.size(), 2U);
+  EXPECT_TRUE(parse({"--config", file.c_str()}).has_config);
+  EXPECT_FALSE(parse({"--fps", "25"}).has_config);
   EXPECT_EQ(s.stream.max_fps, 25);
   std::ofstream(file) << "sceen = \"town.glb\"\n";
   EXPECT_THAT(refusal({"--config", file.c_str()}), HasSubstr("sceen"));

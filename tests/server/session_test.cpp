@@ -365,6 +365,22 @@ TEST_F(SessionFeedback, PassesOnAtMostOneRestartASecond) {
   EXPECT_EQ(session->counts().restarts, 3U);
 }
 
+TEST_F(SessionFeedback, TheNewestEmphasisIsTakenOnce) {
+  stream_to(home);
+  EXPECT_FALSE(session->take_emphasis());
+  feed(Emphasis{.foveation = 1.0});
+  feed(Emphasis{.foveation = 2.0, .priorities = {{"lamp", 3}}});
+  EXPECT_EQ(session->take_emphasis(), (Emphasis{.foveation = 2.0, .priorities = {{"lamp", 3}}}));
+  EXPECT_FALSE(session->take_emphasis());
+  EXPECT_EQ(session->state(), SessionState::kStreaming);
+}
+
+TEST_F(SessionHandshake, AnEmphasisBeforeTheHelloIsRefused) {
+  start();
+  feed(Emphasis{});
+  EXPECT_EQ(session->state(), SessionState::kClosing);
+}
+
 TEST_F(SessionEnd, ServerMessagesFromAClientBreakTheProtocol) {
   stream_to(home);
   feed(proto::FrameMeta{});

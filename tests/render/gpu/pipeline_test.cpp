@@ -48,7 +48,8 @@ class LevelPass : public test::GpuTest {
             static_cast<std::uint32_t>(positions.size() + std::min<std::size_t>(i, patch.size() - 1));
       }
       c.triangles = static_cast<std::uint32_t>(patch.size() - 2);
-      c.priority = priority_;
+      c.surface[0] = 0;
+      c.surface[1] = 1;
       positions.insert(positions.end(), patch.begin(), patch.end());
       if (marks.size() != hidden) {
         list.push_back(static_cast<std::uint32_t>(marks.size()));
@@ -61,14 +62,17 @@ class LevelPass : public test::GpuTest {
     const Buffer mark_buffer = filled("marks", marks);
     const Buffer levels = filled("levels", std::vector<std::uint32_t>(patches.size(), 0));
     const Buffer list_buffer = filled("list", list);
+    const Buffer priorities = filled("priorities", priorities_);
     const DescriptorLayout layout(
-        device(), "level", {{.binding = 1}, {.binding = 3}, {.binding = 4}, {.binding = 5}, {.binding = 6}});
+        device(), "level",
+        {{.binding = 1}, {.binding = 3}, {.binding = 4}, {.binding = 5}, {.binding = 6}, {.binding = 7}});
     DescriptorSets sets(device(), "level", layout);
     sets.write(0, 1, mark_buffer);
     sets.write(0, 3, position_buffer);
     sets.write(0, 4, corner_buffer);
     sets.write(0, 5, levels);
     sets.write(0, 6, list_buffer);
+    sets.write(0, 7, priorities);
     const Pipeline pipeline(device(), ComputeSettings{.name = "level",
                                                       .shader = shaders::visibility_level_comp,
                                                       .layouts = {layout.handle()},
@@ -94,7 +98,7 @@ class LevelPass : public test::GpuTest {
   }
 
   float foveation_ = 0;
-  float priority_ = 0;
+  std::vector<float> priorities_{0, 0};  ///< of the material and the object of every patch
 
  private:
   template <class T>
@@ -150,7 +154,7 @@ TEST_F(LevelPass, FoveationAndPriorityChangeTheAreaAlone) {
   const glm::dvec3 camera{0.1, 0.2, 0.3};
   const auto plain = run(kShapes, camera, 500.0F);
   foveation_ = 2;
-  priority_ = 1.5F;
+  priorities_ = {2, -0.5F};
   const auto biased = run(kShapes, camera, 500.0F);
   for (std::size_t i = 0; i < kShapes.size(); ++i) {
     const auto away = [&](const glm::dvec3& p) {

@@ -94,6 +94,32 @@ TEST_F(Sas, ForeseenPosesStandInForPrediction) {
   EXPECT_GT(SasMethod(device(), scene, small()).render(r).visible_patches, ahead);
 }
 
+TEST_F(Sas, EmphasisCountsFromTheNextFrameOn) {
+  test::TinyScene builder;
+  builder.material(kOpaque);
+  const PatchId middle = builder.wall(-0.1F, -0.1F, 0.1F, 0.1F, -2);
+  const PatchId rim = builder.wall(0.8F, -0.1F, 1.0F, 0.1F, -2);
+  const auto scene = builder.finish();
+  MethodSettings settings = small();
+  settings.emphasis.priorities = {{"", 1}};  // the material has no name
+  SasMethod method(device(), scene, settings);
+  FrameRequest r{.frame = FrameId{0}, .intra = true};
+  r.camera.extent = {160, 120};
+  const auto level = [&](PatchId patch) { return level_log2_area(method.levels()[value(patch)]); };
+  method.render(r);
+  const double middle_before = level(middle);
+  const double rim_before = level(rim);
+  method.set_emphasis({.foveation = 4.0, .priorities = {{"", 3}}});
+  method.render(r);
+  EXPECT_NEAR(level(middle), middle_before + 2, 0.01);
+  EXPECT_LT(level(rim), rim_before + 1.5)
+      << "0.38 rad from the axis, at 4 octaves a radian beyond 10 degrees";
+  method.set_emphasis({});
+  method.render(r);
+  EXPECT_NEAR(level(middle), middle_before - 1, 0.01) << "nothing of before is left";
+  EXPECT_NEAR(level(rim), rim_before - 1, 0.01);
+}
+
 TEST_F(Sas, PlansTheSameLayoutOnTheDeviceAsOnTheHost) {
   const auto scene = corridor(true);
   MethodSettings settings = small();

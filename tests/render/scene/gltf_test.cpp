@@ -109,6 +109,20 @@ TEST(Gltf, ReadsMaterialsAndLights) {
   EXPECT_EQ(scene->sun.direction, glm::vec3(0, 0, -1));
 }
 
+TEST(Gltf, NodesNameObjectsAndGiveThemPriorities) {
+  Quad quad;
+  quad.node =
+      R"({"name":"statue","extras":{"atlas_priority":2},"children":[1,2]},{"name":"head","mesh":0},)"
+      R"({"mesh":0,"translation":[3,0,0],"children":[3]},{"mesh":0,"extras":{"atlas_priority":-1},"translation":[6,0,0]})";
+  const auto scene = quad.load();
+  ASSERT_TRUE(scene.has_value()) << scene.error().message();
+  ASSERT_EQ(scene->patches.size(), 3U);
+  EXPECT_EQ(scene->objects, (std::vector<SceneObject>{{"head", 2.0F}, {"statue", 2.0F}, {"statue", -1.0F}}));
+  for (std::uint32_t object = 0; object < 3; ++object) {
+    EXPECT_EQ(std::ranges::count(scene->patches, object, &Patch::object), 1) << object;
+  }
+}
+
 TEST(Gltf, RefusesWhatReachesOutside) {
   Quad index;
   index.indices[4] = 4;
