@@ -75,6 +75,10 @@ void FrameSource::count(const server::EncodedFrame& frame) {
   shaded_texels_ += report.shaded_texels;
   visible_patches_ += report.visible_patches;
   bias_ += report.bias;
+  held_ += report.visible_patches - report.layout.refused - report.added_patches;
+  moved_ += report.layout.moved;
+  refused_ += report.layout.refused;
+  resets_ += report.layout.reset ? 1 : 0;
   used_share_ += static_cast<double>(report.usage.allocated) / static_cast<double>(settings_.atlas.area());
   render_.visibility += report.render.visibility;
   render_.allocation += report.render.allocation;
@@ -96,6 +100,10 @@ void FrameSource::add_figures(Duration streamed, std::vector<Figure>& figures) c
   figures.push_back({"visible_patches", of_atlas(mean(static_cast<double>(visible_patches_), frames_))});
   figures.push_back({"atlas_used", of_atlas(mean(used_share_, frames_))});
   figures.push_back({"bias", of_atlas(mean(bias_, frames_))});
+  figures.push_back({"refused_patches", of_atlas(static_cast<double>(refused_))});
+  const double moved = mean(static_cast<double>(moved_), held_);
+  figures.push_back({"unmoved_percent", of_atlas(100 * (1 - moved))});
+  figures.push_back({"atlas_resets", of_atlas(static_cast<double>(resets_))});
   figures.push_back({"server_frames", static_cast<double>(frames_)});
 }
 

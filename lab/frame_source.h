@@ -62,6 +62,10 @@ class FrameSource {
   std::uint64_t visible_patches_ = 0;
   double bias_ = 0;
   double used_share_ = 0;
+  std::uint64_t held_ = 0;     ///< blocks of patches that were visible in the frame before, over all frames
+  std::uint64_t moved_ = 0;    ///< of these, given another place or size
+  std::uint64_t refused_ = 0;  ///< visible patches without a block
+  std::uint64_t resets_ = 0;
   render::RenderTimings render_;
   Work making_;
   Duration encoding_{};  ///< of it

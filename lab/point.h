@@ -29,6 +29,8 @@ struct PointSettings {
   double fov_scale = 1.2;                   ///< enlargement of the server's view, >= 1
   double id_scale = 1;                      ///< id pixels per display pixel along a side (sas)
   double max_oversampling = 4;              ///< texels a pixel may get while the atlas has room, 1..8 (sas)
+  double foveation = 0;                     ///< octaves of atlas area lost per radian from the view axis (sas)
+  std::string strategy = "S0";              ///< of the atlas's memory: render::strategies() (sas)
   std::uint32_t reshade_interval = 1;       ///< frames (sas)
   std::uint32_t grid_bits = 0;              ///< of the replica's grid; 0: suited to the scene (sas)
   // Time and network.

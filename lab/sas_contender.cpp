@@ -24,6 +24,8 @@ server::StreamSettings stream_settings(const PointSettings& point) {
   s.render.fov_scale = point.fov_scale;
   s.render.id_scale = point.id_scale;
   s.render.max_oversampling = point.max_oversampling;
+  s.render.emphasis.foveation = point.foveation;
+  s.render.strategy = render::find_strategy(point.strategy).value();
   s.render.max_views = point.foresight ? std::max(point.views, kForeseenViews) : point.views;
   s.render.prediction_step = from_seconds(point.prediction_step_ms * 1e-3);
   s.render.reshade_interval = point.reshade_interval;

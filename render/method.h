@@ -6,6 +6,7 @@
 #include "base/time.h"
 #include "base/units.h"
 #include "render/atlas/allocator.h"
+#include "render/atlas/strategy.h"
 #include "render/camera.h"
 #include "render/scene/scene.h"
 
@@ -115,6 +116,7 @@ struct MethodSettings {
   std::uint32_t frames_in_flight = 3;
   Emphasis emphasis;  ///< until Method::set_emphasis()
   AllocatorKind allocator_kind = AllocatorKind::kAuto;
+  Strategy strategy = Strategy::kS0;  ///< others are there to compare with, on the host
   double level_hysteresis = 0.25;  ///< 0..1 octaves; blocks that stay put against the sharpest size for each
   AllocatorSettings allocator;     ///< its atlas member follows `atlas`
   VideoSettings video;

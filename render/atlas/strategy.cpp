@@ -4,6 +4,7 @@
 #include "render/atlas/block_memory.h"
 #include "render/atlas/patch_ledger.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -11,11 +12,14 @@
 namespace atlaswire::render {
 namespace {
 
+/// When memory is cleared and every block placed anew.
+enum class Resets : std::uint8_t { kNever, kOnIntra, kAlways };
+
 /// Requests in order of level, the largest first, then of patch, straight to the memory.
 class DirectAllocator final : public AtlasAllocator {
  public:
   DirectAllocator(const AllocatorSettings& settings, std::uint32_t patch_count,
-                  std::unique_ptr<BlockMemory> memory, bool resets)
+                  std::unique_ptr<BlockMemory> memory, Resets resets)
       : superblock_area_(std::uint64_t{1} << (2 * settings.superblock_log2)),
         area_(settings.atlas.area()),
         ledger_(settings, patch_count),
@@ -37,7 +41,7 @@ class DirectAllocator final : public AtlasAllocator {
   PatchLedger ledger_;
   AtlasDemand demand_;
   std::unique_ptr<BlockMemory> memory_;
-  bool resets_;
+  Resets resets_;
   std::vector<std::uint32_t> order_;
   LayoutChange change_;
   bool wants_reset_ = false;
@@ -45,7 +49,8 @@ class DirectAllocator final : public AtlasAllocator {
 };
 
 const LayoutChange& DirectAllocator::update(std::span<const BlockRequest> visible, bool may_reset) {
-  change_.reset = std::exchange(restarts_, false) || (may_reset && wants_reset_);
+  change_.reset =
+      std::exchange(restarts_, false) || resets_ == Resets::kAlways || (may_reset && wants_reset_);
   ledger_.advance(visible, change_.reset);
   if (change_.reset) {
     memory_->clear();
@@ -55,7 +60,7 @@ const LayoutChange& DirectAllocator::update(std::span<const BlockRequest> visibl
   place_pending();
   AtlasOutcome outcome = ledger_.report(change_);
   outcome.used_superblocks = static_cast<std::uint32_t>((area_ - memory_->usage().free) / superblock_area_);
-  wants_reset_ = demand_.reset_helps(ledger_.wanted(), outcome) && resets_;
+  wants_reset_ = demand_.reset_helps(ledger_.wanted(), outcome) && resets_ == Resets::kOnIntra;
   return change_;
 }
 
@@ -77,8 +82,9 @@ void DirectAllocator::place_pending() {
   }
 }
 
-constexpr std::array kAll{Strategy::kS0, Strategy::kS1, Strategy::kS2, Strategy::kS3, Strategy::kQuadtree};
-constexpr std::array<std::string_view, kAll.size()> kNames{"S0", "S1", "S2", "S3", "quadtree"};
+constexpr std::array kAll{Strategy::kS0, Strategy::kS1,       Strategy::kS2,
+                          Strategy::kS3, Strategy::kQuadtree, Strategy::kRepack};
+constexpr std::array<std::string_view, kAll.size()> kNames{"S0", "S1", "S2", "S3", "quadtree", "repack"};
 
 }  // namespace
 
@@ -86,21 +92,29 @@ std::span<const Strategy> strategies() { return kAll; }
 
 std::string_view name_of(Strategy strategy) { return kNames[static_cast<std::size_t>(strategy)]; }
 
+std::optional<Strategy> find_strategy(std::string_view name) {
+  const auto found = std::ranges::find(kNames, name);
+  if (found == kNames.end()) return std::nullopt;
+  return kAll[static_cast<std::size_t>(found - kNames.begin())];
+}
+
 std::unique_ptr<AtlasAllocator> make_allocator(Strategy strategy, const AllocatorSettings& settings,
                                                std::uint32_t patch_count) {
   check_allocator_settings(settings);
-  const auto direct = [&](std::unique_ptr<BlockMemory> memory, bool resets) {
+  const auto direct = [&](std::unique_ptr<BlockMemory> memory, Resets resets) {
     return std::make_unique<DirectAllocator>(settings, patch_count, std::move(memory), resets);
   };
   switch (strategy) {
     case Strategy::kS1:
-      return direct(make_level_superblocks(settings, true), true);
+      return direct(make_level_superblocks(settings, true), Resets::kOnIntra);
     case Strategy::kS2:
-      return direct(make_level_superblocks(settings, false), true);
+      return direct(make_level_superblocks(settings, false), Resets::kOnIntra);
     case Strategy::kS3:
-      return direct(make_level_superblocks(settings, false), false);
+      return direct(make_level_superblocks(settings, false), Resets::kNever);
     case Strategy::kQuadtree:
-      return direct(make_quadtree(settings), true);
+      return direct(make_quadtree(settings), Resets::kOnIntra);
+    case Strategy::kRepack:
+      return direct(make_quadtree(settings), Resets::kAlways);
     case Strategy::kS0:
       break;
   }

@@ -10,10 +10,11 @@ namespace {
 
 class HostPlanner final : public LayoutPlanner {
  public:
-  HostPlanner(const VisibilityPass& visibility, const LevelSettings& settings, std::uint32_t patch_count)
+  HostPlanner(const VisibilityPass& visibility, const LevelSettings& settings, std::uint32_t patch_count,
+              Strategy strategy)
       : visibility_(&visibility),
         selector_(settings, patch_count),
-        allocator_(make_sequential_allocator(settings.allocator, patch_count)) {}
+        allocator_(make_allocator(strategy, settings.allocator, patch_count)) {}
 
   void record(const vk::raii::CommandBuffer&, bool) override {}
   const LayoutChange& finish(bool may_reset) override {
@@ -96,10 +97,11 @@ class DevicePlanner final : public LayoutPlanner {
 
 std::unique_ptr<LayoutPlanner> make_layout_planner(Device& device, const VisibilityPass& visibility,
                                                    const LevelSettings& settings, std::uint32_t patch_count,
-                                                   AllocatorKind kind) {
+                                                   AllocatorKind kind, Strategy strategy) {
   const bool on_device = kind == AllocatorKind::kDevice || (kind == AllocatorKind::kAuto && !device.is_cpu());
-  if (on_device) return std::make_unique<DevicePlanner>(device, visibility, settings, patch_count);
-  return std::make_unique<HostPlanner>(visibility, settings, patch_count);
+  if (on_device && strategy == Strategy::kS0)
+    return std::make_unique<DevicePlanner>(device, visibility, settings, patch_count);
+  return std::make_unique<HostPlanner>(visibility, settings, patch_count, strategy);
 }
 
 }  // namespace atlaswire::render

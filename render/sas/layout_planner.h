@@ -32,9 +32,10 @@ class LayoutPlanner {
   [[nodiscard]] virtual const AtlasAllocator& allocator() const = 0;
 };
 
-/// Where the device is a CPU, kAuto is the sequential model: it needs a tenth of the passes' time there.
+/// Where the device is a CPU, kAuto is the sequential model: it needs a tenth of the passes' time there. Any
+/// strategy but kS0 is on the host, whatever the kind.
 std::unique_ptr<LayoutPlanner> make_layout_planner(Device& device, const VisibilityPass& visibility,
                                                    const LevelSettings& settings, std::uint32_t patch_count,
-                                                   AllocatorKind kind);
+                                                   AllocatorKind kind, Strategy strategy);
 
 }  // namespace atlaswire::render

@@ -75,7 +75,7 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
       visibility_(device, scene_gpu_, visibility_settings(settings_)),
       planner_(make_layout_planner(device, visibility_, level_settings(settings_),
                                    static_cast<std::uint32_t>(scene_->patches.size()),
-                                   settings_.allocator_kind)),
+                                   settings_.allocator_kind, settings_.strategy)),
       freed_(settings_.atlas, settings_.allocator.min_block_log2,
              static_cast<std::uint32_t>(scene_->patches.size())),
       shading_(device, scene_gpu_, settings_.atlas, settings_.frames_in_flight),

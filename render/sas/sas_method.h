@@ -30,7 +30,9 @@ class SasMethod final : public Method {
   RenderedFrame render(const FrameRequest& request) override;
   void set_emphasis(const Emphasis& emphasis) override { visibility_.set_emphasis(emphasis); }
   [[nodiscard]] bool wants_intra() const override { return planner_->allocator().wants_reset(); }
-  [[nodiscard]] std::optional<AllocatorSettings> memory() const override { return settings_.allocator; }
+  [[nodiscard]] std::optional<AllocatorSettings> memory() const override {
+    return settings_.strategy == Strategy::kS0 ? std::optional(settings_.allocator) : std::nullopt;
+  }
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return planner_->allocator().blocks(); }
 
   /// What the last frame's visibility pass did.

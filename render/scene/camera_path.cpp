@@ -146,11 +146,20 @@ Result<CameraPath> CameraPath::load(const std::string& name_or_file) {
         },
         4));
   }
+  if (name_or_file == "atrium-about") {
+    return CameraPath(sample(
+        [](double t) {
+          Pose pose = atrium_walk(2);
+          pose.orientation = looking(-std::numbers::pi / 2 + std::numbers::pi * ease(t, 1, 1.5), 0.05);
+          return pose;
+        },
+        2));
+  }
   std::error_code ignored;
   std::ifstream file(name_or_file);
   if (!std::filesystem::is_regular_file(name_or_file, ignored) || !file) {
-    return Error{SceneError::kNotFound,
-                 "camera path '" + name_or_file + "' (built-in: atrium, atrium-turn, atrium-still)"};
+    return Error{SceneError::kNotFound, "camera path '" + name_or_file +
+                                            "' (built-in: atrium, atrium-about, atrium-still, atrium-turn)"};
   }
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   auto path = parse(text);
@@ -158,7 +167,9 @@ Result<CameraPath> CameraPath::load(const std::string& name_or_file) {
   return path;
 }
 
-std::vector<std::string> CameraPath::builtin() { return {"atrium", "atrium-still", "atrium-turn"}; }
+std::vector<std::string> CameraPath::builtin() {
+  return {"atrium", "atrium-about", "atrium-still", "atrium-turn"};
+}
 
 CameraPath CameraPath::standing(const Pose& pose) {
   Key key{Duration::zero(), pose};

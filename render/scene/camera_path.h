@@ -26,7 +26,8 @@ class CameraPath {
   /// Reads a file, or makes a built-in path by its name.
   static Result<CameraPath> load(const std::string& name_or_file);
   /// Names of the built-in paths: "atrium" walks through the built-in scene, "atrium-turn" spins once about
-  /// itself, "atrium-still" stands.
+  /// itself in 4 s, "atrium-about" stands, turns by 180 degrees within half a second and stands,
+  /// "atrium-still" stands.
   static std::vector<std::string> builtin();
   /// A viewer who stands still.
   static CameraPath standing(const Pose& pose);

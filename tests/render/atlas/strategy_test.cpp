@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace atlaswire::render {
 namespace {
 
@@ -20,7 +22,7 @@ TEST_P(EveryStrategy, KeepsEveryPromiseInEveryFrame) {
     const auto& visible = scene.step(frame == 0 ? 1.0 : 0.05, 0.3 + 0.3 * (frame / 100 % 2), 4);
     const bool may_reset = frame % 5 == 0;
     const LayoutChange& change = allocator->update(visible, may_reset);
-    EXPECT_TRUE(may_reset || !change.reset);
+    EXPECT_TRUE(may_reset || !change.reset || GetParam() == Strategy::kRepack);
     ASSERT_EQ(checker.check(*allocator, visible, change), "") << "frame " << frame;
   }
   allocator->update({}, false);
@@ -77,6 +79,31 @@ TEST(Strategies, S3NeverResets) {
     EXPECT_FALSE(s3->update(scene.step(frame == 0 ? 1.0 : 0.2, 0.5, 4), true).reset);
     EXPECT_FALSE(s3->wants_reset());
   }
+}
+
+TEST(Strategies, RepackingDependsOnTheFrameAloneAndMovesBlocks) {
+  const auto repack = make_allocator(Strategy::kRepack, kSettings, 900);
+  const auto stable = make_allocator(Strategy::kQuadtree, kSettings, 900);
+  DriftingScene scene(3, 900, kSettings);
+  std::size_t moved = 0;
+  std::size_t moved_by_need = 0;
+  for (int frame = 0; frame < 50; ++frame) {
+    const auto& visible = scene.step(frame == 0 ? 1.0 : 0.05, 0.3, 4);
+    moved += repack->update(visible, false).moved.size();
+    moved_by_need += stable->update(visible, false).moved.size();
+    const auto fresh = make_allocator(Strategy::kRepack, kSettings, 900);
+    fresh->update(visible, false);
+    ASSERT_TRUE(std::ranges::equal(repack->blocks(), fresh->blocks(), [](const auto& a, const auto& b) {
+      return a.patch == b.patch && a.block == b.block;
+    })) << frame;
+    EXPECT_FALSE(repack->wants_reset());
+  }
+  EXPECT_GT(moved, 3 * moved_by_need);
+}
+
+TEST(Strategies, AreFoundByTheirNames) {
+  for (const Strategy strategy : strategies()) EXPECT_EQ(find_strategy(name_of(strategy)), strategy);
+  EXPECT_FALSE(find_strategy("S4"));
 }
 
 TEST(Strategies, AQuadtreeMergesWhatIsFree) {
