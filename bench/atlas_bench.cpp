@@ -31,7 +31,7 @@ Load make_load() {
   const LevelStream stream = file == nullptr ? record_levels("atrium", "atrium", 60) : load_levels(file);
   if (stream.frames.empty()) throw ProgramError(ExitCode::kBadScene, "the level stream has no frame");
   render::LevelSettings levels;
-  levels.allocator = daemon_atlas({texels, texels});
+  levels.allocator = daemon_atlas({texels, texels}, stream.patch_count);
   return {levels.allocator, stream.patch_count, requests_of(stream, levels)};
 }
 

@@ -3,9 +3,11 @@
 // tables.
 #include "base/program.h"
 #include "bench/level_stream.h"
+#include "codec/video.h"
 #include "render/atlas/strategy.h"
 #include "render/atlas/usage_overlay.h"
 #include "render/image/png.h"
+#include "server/intra_schedule.h"
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -24,16 +26,16 @@ struct Options {
   std::string out;
   std::vector<std::string> levels;
   std::uint32_t side = 2048;
-  std::uint32_t intra = 5;
-  double fill = 0.85;
-  double high_water = 0.95;
+  std::uint32_t intra = codec::VideoEncoderSettings{}.intra_interval;
+  double fill = render::LevelSettings{}.target_fill;
+  double high_water = render::AllocatorSettings{}.high_water;
   std::string strategy = "S0";
   std::string colours = "level";
 };
 
-render::LevelSettings level_settings(const Options& o) {
+render::LevelSettings level_settings(const Options& o, std::uint32_t patch_count) {
   render::LevelSettings s;
-  s.allocator = bench::daemon_atlas({o.side, o.side});
+  s.allocator = bench::daemon_atlas({o.side, o.side}, patch_count);
   s.allocator.high_water = o.high_water;
   s.target_fill = o.fill;
   return s;
@@ -52,19 +54,41 @@ bool out_of_memory(const std::vector<render::BlockRequest>& requests,
   return false;
 }
 
+/// I-frames as a stream has them: by rule, and early ones where memory needs them.
+class IntraFrames {
+ public:
+  explicit IntraFrames(const Options& o) : atlas_{o.side, o.side}, schedule_({.interval = o.intra}) {}
+
+  /// Is the next frame of this allocator one?
+  bool next(const render::AtlasAllocator& allocator) {
+    if (render::reset_is_urgent(allocator, atlas_)) schedule_.ask_for_memory();
+    const bool intra = schedule_.next();
+    count_ += intra ? 1 : 0;
+    return intra;
+  }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+
+ private:
+  Extent2D atlas_;
+  server::IntraSchedule schedule_;
+  std::uint32_t count_ = 0;
+};
+
 struct Classes {
   std::array<double, 5> shares{};  ///< allocated, tails, stacks, inaccessible, free; percent of the atlas
   std::uint32_t short_frames = 0;
   std::uint32_t resets = 0;
+  std::uint32_t intra_frames = 0;
 };
 
 Classes measure_classes(const std::vector<std::vector<render::BlockRequest>>& frames, std::uint32_t patches,
                         Strategy strategy, const Options& o) {
-  const render::LevelSettings settings = level_settings(o);
+  const render::LevelSettings settings = level_settings(o, patches);
   const auto allocator = render::make_allocator(strategy, settings.allocator, patches);
   Classes sum;
+  IntraFrames intra(o);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    sum.resets += allocator->update(frames[i], i % o.intra == 0).reset ? 1 : 0;
+    sum.resets += allocator->update(frames[i], intra.next(*allocator)).reset ? 1 : 0;
     sum.short_frames += out_of_memory(frames[i], allocator->blocks()) ? 1 : 0;
     const render::AtlasUsage u = allocator->usage();
     const std::array texels{u.allocated, u.partial_tail, u.on_stacks, u.inaccessible, u.free};
@@ -73,19 +97,23 @@ Classes measure_classes(const std::vector<std::vector<render::BlockRequest>>& fr
                        static_cast<double>(settings.allocator.atlas.area());
     }
   }
+  sum.intra_frames = intra.count();
   return sum;
 }
 
 void classes(const Options& o) {
-  std::printf("scene,strategy,allocated,tails,stacks,inaccessible,free,out_of_memory_frames,resets,frames\n");
+  std::printf(
+      "scene,strategy,allocated,tails,stacks,inaccessible,free,out_of_memory_frames,resets,intra_frames,"
+      "frames\n");
   for (const std::string& file : o.levels) {
     const bench::LevelStream stream = bench::load_levels(file);
-    const auto frames = bench::requests_of(stream, level_settings(o));
+    const auto frames = bench::requests_of(stream, level_settings(o, stream.patch_count));
     for (const Strategy strategy : render::strategies()) {
+      if (strategy == Strategy::kRepack) continue;  // needs no memory management
       const Classes c = measure_classes(frames, stream.patch_count, strategy, o);
       std::printf("%s,%s", stem(file).c_str(), std::string(render::name_of(strategy)).c_str());
       for (const double share : c.shares) std::printf(",%.1f", share);
-      std::printf(",%u,%u,%zu\n", c.short_frames, c.resets, frames.size());
+      std::printf(",%u,%u,%u,%zu\n", c.short_frames, c.resets, c.intra_frames, frames.size());
     }
   }
 }
@@ -97,17 +125,18 @@ void moves(const Options& o) {
   for (const std::string& file : o.levels) {
     const bench::LevelStream stream = bench::load_levels(file);
     for (const double hysteresis : {0.0, 0.125, 0.25, 0.5, 1.0}) {
-      render::LevelSettings settings = level_settings(o);
+      render::LevelSettings settings = level_settings(o, stream.patch_count);
       settings.hysteresis = hysteresis;
       const auto frames = bench::requests_of(stream, settings);
       const auto allocator = render::make_allocator(Strategy::kS0, settings.allocator, stream.patch_count);
+      IntraFrames intra(o);
       std::map<PatchId, Block> before;
       double moved = 0;
       double kept = 0;
       double unmoved_texels = 0;
       double texels = 0;
-      for (std::size_t i = 0; i < frames.size(); ++i) {
-        allocator->update(frames[i], i % o.intra == 0);
+      for (const auto& frame : frames) {
+        allocator->update(frame, intra.next(*allocator));
         std::map<PatchId, Block> now;
         for (const render::PlacedPatch& p : allocator->blocks()) {
           now.emplace_hint(now.end(), p.patch, p.block);
@@ -130,20 +159,20 @@ void moves(const Options& o) {
 
 void overlay(const Options& o) {
   const bench::LevelStream stream = bench::load_levels(o.levels.front());
-  const render::LevelSettings settings = level_settings(o);
+  const render::LevelSettings settings = level_settings(o, stream.patch_count);
   const auto frames = bench::requests_of(stream, settings);
-  const auto all = render::strategies();
-  const auto found = std::ranges::find(all, o.strategy, &render::name_of);
-  if (found == all.end()) throw ProgramError(ExitCode::kUsage, "--strategy: S0, S1, S2, S3 or quadtree");
-  const auto allocator = render::make_allocator(*found, settings.allocator, stream.patch_count);
+  const auto strategy = render::find_strategy(o.strategy);
+  if (!strategy) throw ProgramError(ExitCode::kUsage, "--strategy: S0, S1, S2, S3, quadtree or repack");
+  const auto allocator = render::make_allocator(*strategy, settings.allocator, stream.patch_count);
   render::UsageOverlay picture(settings.allocator.atlas, settings.allocator.superblock_log2);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    picture.observe(allocator->update(frames[i], i % o.intra == 0));
+  IntraFrames intra(o);
+  for (const auto& frame : frames) {
+    picture.observe(allocator->update(frame, intra.next(*allocator)));
   }
-  const auto written = render::write_png(o.colours == "age"     ? picture.by_age()
-                                         : o.colours == "class" ? picture.by_class()
-                                                                : picture.by_level(),
-                                         o.out);
+  const std::map<std::string, render::LayoutColours> colours{{"class", render::LayoutColours::kClass},
+                                                             {"level", render::LayoutColours::kLevel},
+                                                             {"age", render::LayoutColours::kAge}};
+  const auto written = render::write_png(picture.picture(colours.at(o.colours)), o.out);
   if (!written) throw ProgramError(ExitCode::kCannotWrite, written.error().message());
 }
 
@@ -169,7 +198,7 @@ int body(int argc, char** argv) {
   auto* classes_command = measuring("classes", "Memory classes by strategy ([SAS] fig. 11), as CSV");
   auto* moves_command = measuring("moves", "Blocks moved by hysteresis, as CSV");
   auto* overlay_command = measuring("overlay", "Picture of the layout at the walk's end");
-  overlay_command->add_option("--strategy", o.strategy, "S0, S1, S2, S3 or quadtree");
+  overlay_command->add_option("--strategy", o.strategy, "S0, S1, S2, S3, quadtree or repack");
   overlay_command->add_option("--colours", o.colours, "By level, age or class")
       ->check(CLI::IsMember({"level", "age", "class"}));
   overlay_command->add_option("--out", o.out, "PNG")->required();

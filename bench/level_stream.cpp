@@ -105,8 +105,10 @@ std::vector<std::vector<render::BlockRequest>> requests_of(const LevelStream& st
   return all;
 }
 
-render::AllocatorSettings daemon_atlas(Extent2D atlas) {
-  return {.atlas = atlas, .superblock_log2 = render::suited_superblock_log2(atlas)};
+render::AllocatorSettings daemon_atlas(Extent2D atlas, std::uint32_t patch_count) {
+  return {.atlas = atlas,
+          .superblock_log2 = render::suited_superblock_log2(atlas),
+          .min_block_log2 = render::suited_min_block_log2(atlas, patch_count)};
 }
 
 }  // namespace atlaswire::bench

@@ -32,6 +32,6 @@ std::vector<std::vector<render::BlockRequest>> requests_of(const LevelStream& st
                                                            const render::LevelSettings& settings);
 
 /// Allocator settings as the daemon has them.
-render::AllocatorSettings daemon_atlas(Extent2D atlas);
+render::AllocatorSettings daemon_atlas(Extent2D atlas, std::uint32_t patch_count);
 
 }  // namespace atlaswire::bench

@@ -118,7 +118,7 @@ struct MethodSettings {
   AllocatorKind allocator_kind = AllocatorKind::kAuto;
   Strategy strategy = Strategy::kS0;  ///< others are there to compare with, on the host
   double level_hysteresis = 0.25;  ///< 0..1 octaves; blocks that stay put against the sharpest size for each
-  AllocatorSettings allocator;     ///< its atlas member follows `atlas`
+  AllocatorSettings allocator;  ///< `atlas` follows ours; its smallest block is at most suited_min_block_log2
   VideoSettings video;
 };
 

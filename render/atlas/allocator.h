@@ -60,13 +60,19 @@ struct AllocatorSettings {
   Extent2D atlas{1024, 1024};         ///< multiples of the superblock side
   std::uint32_t superblock_log2 = 6;  ///< side 2^n, also the largest block's side
   std::uint32_t min_block_log2 = 1;   ///< smallest side 2^n; 1 keeps 4:2:0 chroma of neighbours apart
-  double high_water = 0.95;           ///< share of texels outside free superblocks that asks for a reset
+  double high_water = 0.8;            ///< share of texels outside free superblocks that asks for a reset
 };
 
 /// The superblock side that suits an atlas: an eighth of the atlas's side (64 superblocks), so that large
 /// triangles find blocks of their own size without whole superblocks standing open for each width; a power of
-/// two from 2^6 to 2^8 that divides both sides, which must be multiples of 64.
+/// two from 2^5 to 2^8 that divides both sides, which must be multiples of 64.
 std::uint32_t suited_superblock_log2(Extent2D atlas);
+
+/// The smallest block's side that suits an atlas and a scene: 2^1, unless the atlas has fewer texels than the
+/// scene patches. About a sixth of a scene's patches are visible at once; 2x2 texels for each would then fill
+/// the atlas or exceed it, and a patch without a block is a hole, which is worse than chroma shared with
+/// neighbours.
+std::uint32_t suited_min_block_log2(Extent2D atlas, std::uint32_t patch_count);
 
 /// The atlas's memory: a block for each visible patch, stable while it stays visible at one size. A
 /// deterministic function of its inputs. Implementations: the sequential three-layer reference here;
@@ -87,6 +93,10 @@ class AtlasAllocator {
   /// less than it wanted, and a reset would help.
   [[nodiscard]] virtual bool wants_reset() const = 0;
 };
+
+/// A reset would help and should not wait for the next I-frame by rule, because next to no superblock is
+/// free: an early I-frame is worth its bytes.
+bool reset_is_urgent(const AtlasAllocator& allocator, Extent2D atlas);
 
 /// The sequential model of [SAS] 4.2: request, provisioning and assignment phases, in patch order.
 std::unique_ptr<AtlasAllocator> make_sequential_allocator(const AllocatorSettings& settings,

@@ -8,6 +8,11 @@
 
 namespace atlaswire::render {
 
+bool reset_is_urgent(const AtlasAllocator& allocator, Extent2D atlas) {
+  constexpr std::uint64_t kScarce = 20;  // free superblocks are less than 1 / this of the atlas
+  return allocator.wants_reset() && allocator.usage().free * kScarce < atlas.area();
+}
+
 std::uint64_t high_water_texels(const AllocatorSettings& settings) {
   return static_cast<std::uint64_t>(settings.high_water * static_cast<double>(settings.atlas.area()));
 }

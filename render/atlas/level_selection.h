@@ -31,7 +31,7 @@ BlockRequest round_level(PatchId patch, std::int32_t area, std::int32_t aspect, 
 /// Settings of level selection; each trades memory or stillness against sharpness.
 struct LevelSettings {
   AllocatorSettings allocator;
-  double target_fill = 0.85;      ///< 0..1: share of the atlas that blocks may take
+  double target_fill = 0.8;       ///< 0..1: share of the atlas that blocks may take
   double max_oversampling = 4.0;  ///< >= 1: texels a pixel may get when the atlas has room
   double hysteresis = 0.25;       ///< 0..1 octaves past the rounding boundary before a level changes
 };

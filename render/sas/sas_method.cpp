@@ -8,8 +8,11 @@
 namespace atlaswire::render {
 namespace {
 
-MethodSettings checked(MethodSettings settings) {
+MethodSettings checked(MethodSettings settings, std::size_t patches) {
   settings.allocator.atlas = settings.atlas;
+  settings.allocator.min_block_log2 =
+      std::min(settings.allocator.min_block_log2,
+               suited_min_block_log2(settings.atlas, static_cast<std::uint32_t>(patches)));
   if (!(settings.fov_scale >= 1.0 && settings.fov_scale <= 4.0) ||
       !(settings.id_scale > 0.0 && settings.id_scale <= 4.0) || settings.max_views < 1 ||
       settings.reshade_interval < 1 || settings.frames_in_flight < 1) {
@@ -69,7 +72,7 @@ bool advance_to(Iterator& at, Iterator end, PatchId patch) {
 }  // namespace
 
 SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const MethodSettings& settings)
-    : settings_(checked(settings)),
+    : settings_(checked(settings, scene->patches.size())),
       scene_(std::move(scene)),
       scene_gpu_(device, scene_),
       visibility_(device, scene_gpu_, visibility_settings(settings_)),

@@ -29,7 +29,9 @@ class SasMethod final : public Method {
   [[nodiscard]] Extent2D picture_extent() const override { return conversion_.picture_extent(); }
   RenderedFrame render(const FrameRequest& request) override;
   void set_emphasis(const Emphasis& emphasis) override { visibility_.set_emphasis(emphasis); }
-  [[nodiscard]] bool wants_intra() const override { return planner_->allocator().wants_reset(); }
+  [[nodiscard]] bool wants_intra() const override {
+    return reset_is_urgent(planner_->allocator(), settings_.atlas);
+  }
   [[nodiscard]] std::optional<AllocatorSettings> memory() const override {
     return settings_.strategy == Strategy::kS0 ? std::optional(settings_.allocator) : std::nullopt;
   }

@@ -116,7 +116,7 @@ TEST(LevelSelector, FillsTheAtlasButDoesNotOverflowIt) {
     LevelSettings settings{.allocator = atlas_of(256), .max_oversampling = 4096};
     LevelSelector selector(settings, 2000);
     const LevelStats stats = selector.select(packed, out);
-    const auto target = static_cast<std::uint64_t>(0.85 * 256 * 256);
+    const auto target = static_cast<std::uint64_t>(LevelSettings{}.target_fill * 256 * 256);
     EXPECT_EQ(stats.texels, area_of(out));
     EXPECT_LE(stats.texels, target);
     // One bias step less must not fit: an eighth of the patches would double at most.
@@ -141,7 +141,7 @@ TEST(LevelSelector, TakesTheSmallestBiasThatFits) {
       }
       return static_cast<double>(sum);
     };
-    const double target = 0.85 * 256 * 256;
+    const double target = LevelSettings{}.target_fill * 256 * 256;
     EXPECT_LE(texels_at(bias), target);
     if (bias > -1) {
       EXPECT_GT(texels_at(bias - 0.125), target);
@@ -237,7 +237,7 @@ TEST(LevelSelector, HysteresisNeverCostsTheAtlas) {
     }
     const LevelStats stats = selector.select(packed, out);
     ASSERT_EQ(stats.texels, area_of(out));
-    ASSERT_LE(stats.texels, static_cast<std::uint64_t>(0.85 * 128 * 128)) << frame;
+    ASSERT_LE(stats.texels, static_cast<std::uint64_t>(LevelSettings{}.target_fill * 128 * 128)) << frame;
   }
 }
 
@@ -245,7 +245,7 @@ TEST(LevelSelector, TakesHysteresisBackWhenMemoryIsShort) {
   // 40 patches shrink within their margin while 50 others grow beyond theirs.
   std::vector<std::uint32_t> packed(90, pack_projection(64, 1));
   std::fill(packed.begin() + 40, packed.end(), pack_projection(16, 1));
-  LevelSelector selector({.allocator = atlas_of(64), .max_oversampling = 1}, 90);
+  LevelSelector selector({.allocator = atlas_of(64), .target_fill = 0.85, .max_oversampling = 1}, 90);
   std::vector<BlockRequest> out;
   EXPECT_EQ(selector.select(packed, out).texels, 40U * 64 + 50U * 16);
   std::fill(packed.begin(), packed.begin() + 40, pack_projection(std::exp2(5.4), 1));

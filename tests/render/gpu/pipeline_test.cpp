@@ -150,6 +150,21 @@ TEST_F(LevelPass, AgreesWithDoublePrecision) {
   }
 }
 
+TEST_F(LevelPass, EdgesOfNearlyHalfATurnKeepTheirDigits) {
+  // Strips that pass a centimetre below the camera: their long sides are seen at 180 degrees less 2e-2 to
+  // 2e-5.
+  const glm::dvec3 camera{0.1, 0.2, 0.3};
+  for (const float reach : {1.0F, 10.0F, 100.0F, 1000.0F}) {
+    const std::vector<glm::vec3> p{
+        {-reach, 0.19F, 0.3F}, {reach, 0.19F, 0.3F}, {reach, 0.19F, 0.4F}, {-reach, 0.19F, 0.4F}};
+    const auto words = run({p}, camera, 467.65F);
+    const double width = std::max(edge(camera, p[0], p[1], 467.65), edge(camera, p[2], p[3], 467.65));
+    const double height = std::max(edge(camera, p[1], p[2], 467.65), edge(camera, p[3], p[0], 467.65));
+    EXPECT_GT(width, 467 * 3.1);
+    EXPECT_NEAR(level_log2_aspect(words[0]), std::log2(width / height), 0.01) << reach;
+  }
+}
+
 TEST_F(LevelPass, FoveationAndPriorityChangeTheAreaAlone) {
   const glm::dvec3 camera{0.1, 0.2, 0.3};
   const auto plain = run(kShapes, camera, 500.0F);
