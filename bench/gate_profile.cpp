@@ -3,6 +3,7 @@
 #include "codec/gate_script.h"
 
 #include <cmath>
+#include <optional>
 
 namespace atlaswire::bench {
 
@@ -69,7 +70,9 @@ GateProfile::Bits GateProfile::encode(const codec::MetaUpdate& update) {
   if (update.reset) state_.clear();
   plan_.begin(update, state_);
   CountingCoder coder(state_.models, bits);
-  codec::GateScript<CountingCoder>(coder, state_, limits_, ~0U, &plan_).code(update.reset, nullptr);
+  std::optional<codec::LayoutCue> cue = update.cue;
+  codec::GateScript<CountingCoder>(coder, state_, limits_, ~0U, cue ? &*cue : nullptr, &plan_)
+      .code(update.reset, nullptr);
   return bits;
 }
 
