@@ -1,5 +1,7 @@
 #include "render/scene/chunk_order.h"
 
+#include "render/scene/walk_order.h"
+
 #include <algorithm>
 #include <glm/common.hpp>
 #include <limits>
@@ -49,7 +51,8 @@ int longest_axis(std::span<const Item> items) {
 
 class Cutter {
  public:
-  Cutter(std::uint32_t most_triangles, std::vector<OrderedGroup>& out) : most_(most_triangles), out_(out) {}
+  Cutter(std::uint32_t most_triangles, WalkOrder& walk, std::vector<OrderedGroup>& out)
+      : most_(most_triangles), walk_(walk), out_(out) {}
 
   void cut(std::span<Item> items) {
     std::uint64_t triangles = 0;
@@ -73,14 +76,17 @@ class Cutter {
   }
 
  private:
-  /// In the order of the groups, which is that of the source's triangles.
-  void emit(std::span<Item> items) {
-    std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.group < b.group; });
-    for (const Item& item : items) out_.push_back({item.group, chunks_, item.material});
+  void emit(std::span<const Item> items) {
+    numbers_.clear();
+    for (const Item& item : items) numbers_.push_back(item.group);
+    walk_.arrange(numbers_);
+    for (const std::uint32_t group : numbers_) out_.push_back({group, chunks_, items.front().material});
     ++chunks_;
   }
 
   std::uint32_t most_;
+  WalkOrder& walk_;
+  std::vector<std::uint32_t> numbers_;
   std::uint32_t chunks_ = 0;
   std::vector<OrderedGroup>& out_;
 };
@@ -95,7 +101,11 @@ std::vector<OrderedGroup> order_by_chunk(const FlatMesh& flat, const std::vector
   std::sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return key(a) < key(b); });
   std::vector<OrderedGroup> out;
   out.reserve(items.size());
-  Cutter cutter(most_triangles, out);
+  std::vector<glm::vec3> positions;
+  positions.reserve(flat.vertices.size());
+  for (const ShadingVertex& v : flat.vertices) positions.push_back(v.position);
+  WalkOrder walk(positions, groups);
+  Cutter cutter(most_triangles, walk, out);
   for (std::size_t first = 0; first < items.size();) {
     std::size_t last = first + 1;
     while (last < items.size() && items[last].material == items[first].material) ++last;
