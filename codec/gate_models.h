@@ -52,11 +52,15 @@ struct GateModels {
   std::array<AdaptiveUnsigned, 3> gap;       ///< by the gap before
   std::array<AdaptiveTree<2>, 4> triangles;  ///< by those of the nearest patch
   std::array<AdaptiveTree<3>, 7> draw;       ///< by that of the nearest patch
-  std::array<AdaptiveBit, kNear * 5 * 3 * 3>
-      gate;                                     ///< by nearness, edge, its patch's triangles, own triangles
+  std::array<AdaptiveBit, (kNear + 1) * 4 * 5 * 3 * 3>
+      gate;  ///< by nearness, how often refused, edge, its patch's triangles, own triangles
   std::array<AdaptiveTree<3>, 3 * 3 * 5> turn;  ///< by own triangles, those of the gate's patch, its edge
   std::array<AdaptiveBit, 3 * kDistanceClasses * 3 * 2> corner;
-  std::array<PositionModels, 2> position;  ///< without and with a gate
+  std::array<PositionModels, 2> position;    ///< without and with a gate
+  static constexpr std::uint32_t kWays = 3;  ///< to foretell an attached corner
+  /// How far each was off lately: by own triangles, whether the gate's patch is one triangle, and which
+  /// corner.
+  std::array<std::array<std::uint32_t, kWays>, 3 * 2 * 3> off{};
 
   // Where blocks are.
   AdaptiveBit aligned;

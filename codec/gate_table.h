@@ -16,6 +16,9 @@ struct Gate {
   std::uint32_t to = 0;
   std::uint32_t behind_from = 0;
   std::uint32_t behind_to = 0;
+  std::uint8_t refused = 0;  ///< times that it was offered in vain, at most kMostRefused
+
+  static constexpr std::uint8_t kMostRefused = 3;
 };
 
 /// The corners of a patch in order; `count` of them count.
@@ -45,6 +48,11 @@ class GateTable {
     return index_.find(key_of(from, to));
   }
   [[nodiscard]] const Gate& gate(std::uint32_t number) const { return links_[number].gate; }
+  /// Notes that a new patch was not attached there.
+  void refuse(std::uint32_t number) {
+    std::uint8_t& refused = links_[number].gate.refused;
+    if (refused < Gate::kMostRefused) ++refused;
+  }
 
   /// Gates that leave a vertex or arrive at it, the latest first; kNone ends the lists.
   [[nodiscard]] std::uint32_t first_leaving(std::uint32_t vertex) const { return first_of(leaving_, vertex); }

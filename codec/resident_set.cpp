@@ -16,18 +16,22 @@ void ResidentSet::merge(std::span<const NewResident> arrivals) {
   shapes_.resize(at);
   blocks_.resize(at);
   visible_ += static_cast<std::uint32_t>(arrivals.size());
-  // From the back, so that each entry moves once.
+  // From the back, so that each entry moves once, and in runs between arrivals.
   for (std::size_t left = arrivals.size(); left > 0;) {
-    --at;
-    const NewResident& arrival = arrivals[left - 1];
-    if (old > 0 && presences_[old - 1].id > arrival.id) {
-      --old;
-      presences_[at] = presences_[old];
-      shapes_[at] = shapes_[old];
-      blocks_[at] = blocks_[old];
-      continue;
-    }
-    --left;
+    const NewResident& arrival = arrivals[--left];
+    const auto begin = presences_.begin();
+    const auto first = std::lower_bound(begin, begin + static_cast<std::ptrdiff_t>(old), arrival.id,
+                                        [](const Presence& p, PatchId id) { return p.id < id; }) -
+                       begin;
+    const auto move_run = [&](auto& list) {
+      std::move_backward(list.begin() + first, list.begin() + static_cast<std::ptrdiff_t>(old),
+                         list.begin() + static_cast<std::ptrdiff_t>(at));
+    };
+    move_run(presences_);
+    move_run(shapes_);
+    move_run(blocks_);
+    at -= old - static_cast<std::size_t>(first) + 1;
+    old = static_cast<std::size_t>(first);
     presences_[at] = {.id = arrival.id, .visible = true, .history = 1};
     shapes_[at] = arrival.shape;
     blocks_[at] = arrival.block;

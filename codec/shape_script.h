@@ -61,6 +61,9 @@ class ShapeScript {
     std::array<Offset, 2> beside{};  ///< vertices whose coordinates may come again
     std::uint32_t scale = 0;
     bool attached = false;
+    std::array<Offset, GateModels::kWays> ways{};  ///< an attached corner could be foretold
+    /// How far each was off lately; null: the corner is not attached.
+    std::array<std::uint32_t, GateModels::kWays>* off = nullptr;
   };
   struct Offer {
     std::uint32_t vertex = 0;
@@ -73,12 +76,14 @@ class ShapeScript {
   };
 
   static constexpr std::uint32_t kNone = VertexTable::kNone;
-  static constexpr std::uint32_t kMostTested = 8;  ///< gates looked at of a vertex's, which may be many
+  static constexpr std::uint32_t kMostBack = 128;    ///< new patches looked back at for gates
+  static constexpr std::uint32_t kMostOffered = 64;  ///< gates for one patch, about
+  static constexpr std::uint32_t kMostTested = 8;    ///< gates looked at of a vertex's, which may be many
 
   bool code_id(const WantedPatch* wanted, NewResident& patch);
   void look_around(std::span<const NewResident> before);
   bool code_class(const WantedPatch* wanted, PatchShape& shape);
-  Attached code_gate(const PatchShape& shape, const WantedPatch* wanted);
+  Attached code_gate(std::span<const NewResident> before, const PatchShape& shape, const WantedPatch* wanted);
   bool code_corners(const Attached& attached, const WantedPatch* wanted, PatchShape& shape);
   Expected expect(const Attached& attached, const PatchShape& shape, std::uint32_t turn, std::uint32_t step);
   void expect_attached(const Gate& gate, const PatchShape& shape, std::uint32_t turn, std::uint32_t step,
@@ -92,6 +97,7 @@ class ShapeScript {
   GridPosition code_position(const Expected& expected, const GridPosition* wanted);
   std::int32_t code_residual(PositionModels& models, std::uint32_t scale, std::uint32_t& size_class,
                              std::int32_t value);
+  static void learn(const Expected& expected, const GridPosition& position);
 
   [[nodiscard]] Offset at(std::uint32_t vertex) const { return Offset(state_->vertices.position(vertex)); }
   static std::uint32_t distance(const Offset& a, const Offset& b) {
@@ -121,7 +127,7 @@ std::optional<NewResident> ShapeScript<Coder>::code(std::span<const NewResident>
   if (!code_id(wanted, patch)) return std::nullopt;
   look_around(before);
   if (!code_class(wanted, patch.shape)) return std::nullopt;
-  const Attached attached = code_gate(patch.shape, wanted);
+  const Attached attached = code_gate(before, patch.shape, wanted);
   if (!code_corners(attached, wanted, patch.shape)) return std::nullopt;
   const auto block =
       code_level(*coder_, models_->new_level, near_[0].block, wanted ? &wanted->block : nullptr);
@@ -204,9 +210,10 @@ bool ShapeScript<Coder>::code_class(const WantedPatch* wanted, PatchShape& shape
   return true;
 }
 
-/// Offers the open gates of patches near in number, until one is taken.
+/// Offers the open gates of patches near in number, then those of earlier new patches, until one is taken.
 template <class Coder>
-typename ShapeScript<Coder>::Attached ShapeScript<Coder>::code_gate(const PatchShape& shape,
+typename ShapeScript<Coder>::Attached ShapeScript<Coder>::code_gate(std::span<const NewResident> before,
+                                                                    const PatchShape& shape,
                                                                     const WantedPatch* wanted) {
   const std::uint32_t corners = corner_count(shape.triangles);
   std::array<std::uint32_t, kMaxPatchCorners> slots{};
@@ -219,17 +226,33 @@ typename ShapeScript<Coder>::Attached ShapeScript<Coder>::code_gate(const PatchS
     }
     return false;
   };
-  for (std::uint32_t n = 0; n < near_.size(); ++n) {
-    if (!near_[n].known) continue;
-    const Outline other = outline(near_[n].shape);
-    const std::uint32_t kind = near_[n].shape.triangles - 1U;
+  Attached attached;
+  std::uint32_t offered = 0;
+  const auto offer_gates = [&](std::uint32_t n, const PatchShape& near) {
+    const Outline other = outline(near);
+    const std::uint32_t kind = near.triangles - 1U;
     for (std::uint32_t edge = 0; edge < other.count; ++edge) {
       const std::uint32_t number = state_->gates.find(other.at(edge + 1), other.at(edge));
       if (number == GateTable::kNone) continue;
       const Gate& gate = state_->gates.gate(number);
-      AdaptiveBit& model = models_->gate[((n * 5 + edge) * 3 + kind) * 3 + shape.triangles - 1];
-      if (coder_->code(model, wanted != nullptr && fits(gate))) return {&gate, kind + 1, edge};
+      const std::uint32_t rank = n * (Gate::kMostRefused + 1U) + gate.refused;
+      AdaptiveBit& model = models_->gate[((rank * 5 + edge) * 3 + kind) * 3 + shape.triangles - 1];
+      ++offered;
+      if (coder_->code(model, wanted != nullptr && fits(gate))) {
+        attached = {&gate, kind + 1, edge};
+        return true;
+      }
+      state_->gates.refuse(number);
     }
+    return false;
+  };
+  for (std::uint32_t n = 0; n < near_.size(); ++n) {
+    if (near_[n].known && offer_gates(n, near_[n].shape)) return attached;
+  }
+  for (std::size_t left = before.size(), looked = 0;
+       left > near_.size() / 2 && looked < kMostBack && offered < kMostOffered; ++looked) {
+    --left;
+    if (offer_gates(GateModels::kNear, before[left - near_.size() / 2].shape)) return attached;
   }
   return {};
 }
@@ -294,19 +317,36 @@ void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& sha
   const std::uint32_t corners = corner_count(shape.triangles);
   const Offset from = at(gate.from);
   const Offset to = at(gate.to);
+  const Offset behind_from = at(gate.behind_from);
+  const Offset behind_to = at(gate.behind_to);
   const bool from_triangle = gate.behind_from == gate.behind_to;
-  Offset onward = to - at(gate.behind_to);
-  if (from_triangle) {
-    onward = corners == 3 ? from - at(gate.behind_to) : (from + to) / 2 - at(gate.behind_to);
-  }
-  const Offset first = step == 2 ? to : at(shape.corners[(turn + 2) % corners]);
+  std::uint32_t stage = 0;
   if (step == 2) {
-    expected.at = to + onward;
-  } else if (step == corners - 1) {
-    expected.at = from + (first - to);
+    const Offset onward = to - behind_to;
+    const Offset beside = from - behind_from;
+    if (!from_triangle) {
+      expected.ways = {to + onward, to + beside, to + (onward + beside) / 2};
+    } else if (corners == 3) {
+      expected.ways = {to + beside, to + onward, from + beside};
+    } else {
+      expected.ways = {to + (onward + beside) / 2, to + beside, to + onward};
+    }
   } else {
-    expected.at = first + (from - to) / 2;
+    const Offset first = at(shape.corners[(turn + 2) % corners]);
+    if (step == corners - 1) {
+      stage = 2;
+      const Offset bend = from_triangle ? Offset(0) : (from - to) - (behind_from - behind_to);
+      const Offset own = from + (first - to);
+      expected.ways = {own, own + bend, own + bend / 2};
+    } else {
+      stage = 1;
+      expected.ways.fill(first + (from - to) / 2);
+    }
   }
+  const std::uint32_t situation = ((corners - 3) * 2 + static_cast<std::uint32_t>(from_triangle)) * 3 + stage;
+  expected.off = &models_->off[situation];
+  const auto best = std::ranges::min_element(*expected.off);
+  expected.at = expected.ways[static_cast<std::size_t>(best - expected.off->begin())];
   expected.beside = {to, from};
   expected.scale =
       std::min<std::uint32_t>(17, static_cast<std::uint32_t>(std::bit_width(distance(from, to))));
@@ -399,6 +439,7 @@ std::uint32_t ShapeScript<Coder>::code_corner(const Expected& expected, std::spa
     fail(MetaError::kBadPosition);
     return kNone;
   }
+  if (expected.off != nullptr) learn(expected, position);
   const std::uint32_t vertex = state_->vertices.find(position);
   if (vertex != kNone) return vertex;
   if (state_->vertices.size() >= limits_->max_vertices) {
@@ -441,6 +482,16 @@ GridPosition ShapeScript<Coder>::code_position(const Expected& expected, const G
     position[axis] = static_cast<std::uint32_t>(offered[0]) + static_cast<std::uint32_t>(residual);
   }
   return position;
+}
+
+/// Notes how far off each way to foretell the corner was.
+template <class Coder>
+void ShapeScript<Coder>::learn(const Expected& expected, const GridPosition& position) {
+  for (std::size_t way = 0; way < expected.ways.size(); ++way) {
+    const std::uint32_t missed = distance(Offset(position), expected.ways[way]);
+    std::uint32_t& off = (*expected.off)[way];
+    off += 64 * static_cast<std::uint32_t>(std::bit_width(missed)) - off / 64;
+  }
 }
 
 /// `size_class` goes from axis to axis: how large the difference was for the scale.

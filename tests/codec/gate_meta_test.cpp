@@ -1,6 +1,7 @@
 #include "codec/gate_meta.h"
 
 #include "codec/plain_meta.h"
+#include "tests/codec/gate_stream.h"
 #include "tests/codec/meta_support.h"
 #include "tests/codec/scene_walk.h"
 #include "tests/codec/shown_patches.h"
@@ -14,39 +15,6 @@
 namespace atlaswire::codec {
 namespace {
 
-/// Both ends, and what a client shows by each.
-struct Stream {
-  explicit Stream(const MetaLimits& limits) : encoder(limits), decoder(limits) {}
-
-  ByteBuffer encoded(const MetaUpdate& update) {
-    ByteBuffer message;
-    encoder.encode(update, message);
-    return message;
-  }
-  /// Passes an update through and holds what comes out against it.
-  void pass(const MetaUpdate& update) {
-    bytes += encoded_and_decoded(update);
-    wanted.apply(update);
-    ASSERT_TRUE(wanted == got);
-  }
-  std::size_t encoded_and_decoded(const MetaUpdate& update) {
-    const ByteBuffer message = encoded(update);
-    const auto back = decoder.decode(message);
-    EXPECT_TRUE(back) << back.error().message();
-    if (!back) return 0;
-    EXPECT_EQ(back->frame, update.frame);
-    EXPECT_EQ(back->reset, update.reset);
-    got.apply(*back);
-    return message.size();
-  }
-
-  GateMetaEncoder encoder;
-  GateMetaDecoder decoder;
-  ShownPatches wanted;
-  ShownPatches got;
-  std::size_t bytes = 0;
-};
-
 std::error_code refusal(const Result<MetaUpdate>& result) {
   return result ? std::error_code{} : result.error().code;
 }
@@ -54,7 +22,7 @@ std::error_code refusal(const Result<MetaUpdate>& result) {
 TEST(GateMetaRoundTrip, KeepsWhatAWalkShows) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     SceneWalk walk(seed);
-    Stream stream(walk.limits());
+    GateStream stream(walk.limits());
     for (int frame = 0; frame < 120; ++frame) {
       ASSERT_NO_FATAL_FAILURE(stream.pass(walk.next(frame == 70))) << "seed " << seed << " frame " << frame;
     }
@@ -63,7 +31,7 @@ TEST(GateMetaRoundTrip, KeepsWhatAWalkShows) {
 
 TEST(GateMetaRoundTrip, TakesHalfOfThePlainForm) {
   SceneWalk walk(4, 40);
-  Stream stream(walk.limits());
+  GateStream stream(walk.limits());
   PlainMetaEncoder plain;
   ByteBuffer plain_bytes;
   for (int frame = 0; frame < 90; ++frame) {
@@ -76,7 +44,7 @@ TEST(GateMetaRoundTrip, TakesHalfOfThePlainForm) {
 }
 
 TEST(GateMetaRoundTrip, KeepsEmptyUpdates) {
-  Stream stream(test_limits());
+  GateStream stream(test_limits());
   for (std::uint32_t frame : {7U, 8U, 9U, 4U, 0xFFFFFFFFU, 0U}) {
     MetaUpdate update;
     update.frame = FrameId{frame};
@@ -110,7 +78,7 @@ MetaLimits roomy_limits(std::uint32_t grid_bits) {
 
 TEST(GateMetaRoundTrip, KeepsManyTrianglesAtOnePlace) {
   // Nearly nothing is left to say of each: the message is padded up to what a decoder allows.
-  Stream stream(roomy_limits(16));
+  GateStream stream(roomy_limits(16));
   const MetaUpdate update =
       triangles(300'000, [](std::uint32_t, std::uint32_t) { return GridPosition(5, 6, 7); });
   ASSERT_NO_FATAL_FAILURE(stream.pass(update));
@@ -119,7 +87,7 @@ TEST(GateMetaRoundTrip, KeepsManyTrianglesAtOnePlace) {
 
 TEST(GateMetaRoundTrip, KeepsTheCornersOfTheFinestGrid) {
   constexpr std::uint32_t kTop = (1U << 20U) - 1;
-  Stream stream(roomy_limits(20));
+  GateStream stream(roomy_limits(20));
   const MetaUpdate update = triangles(2000, [](std::uint32_t i, std::uint32_t corner) {
     const std::uint32_t bits = i * 7 + corner * 3;
     return GridPosition((bits & 1U) * kTop, (bits >> 1U & 1U) * kTop, (bits >> 2U & 1U) * kTop);
@@ -129,14 +97,14 @@ TEST(GateMetaRoundTrip, KeepsTheCornersOfTheFinestGrid) {
 
 TEST(GateMetaRoundTrip, KeepsSoup) {
   Random random(3);
-  Stream stream(roomy_limits(20));
+  GateStream stream(roomy_limits(20));
   const auto axis = [&] { return static_cast<std::uint32_t>(random.below(1U << 20U)); };
   ASSERT_NO_FATAL_FAILURE(stream.pass(
       triangles(5000, [&](std::uint32_t, std::uint32_t) { return GridPosition(axis(), axis(), axis()); })));
 }
 
 TEST(GateMetaRoundTrip, KeepsAPatchThatComesBackInAnotherShape) {
-  Stream stream(test_limits());
+  GateStream stream(test_limits());
   MetaUpdate update;
   update.vertices = {
       {VertexId{0}, {1, 1, 1}}, {VertexId{1}, {9, 1, 1}}, {VertexId{2}, {1, 9, 1}}, {VertexId{3}, {9, 9, 1}}};
@@ -157,7 +125,7 @@ TEST(GateMetaRoundTrip, KeepsAPatchThatComesBackInAnotherShape) {
 TEST(GateMetaRoundTrip, ForgetsWhatWasHiddenLong) {
   // Far more patches than are kept for later come and go.
   constexpr std::uint32_t kEach = 20'000;
-  Stream stream(roomy_limits(16));
+  GateStream stream(roomy_limits(16));
   MetaUpdate update;
   for (std::uint32_t wave = 0; wave < 12; ++wave) {
     update.removed.clear();
@@ -222,7 +190,7 @@ TEST(GateMetaRoundTrip, LeavesPositionsToTheReceiver) {
 
 TEST(GateMetaDecode, NoticesALostUpdate) {
   SceneWalk walk(6);
-  Stream stream(walk.limits());
+  GateStream stream(walk.limits());
   for (int frame = 0; frame < 5; ++frame) ASSERT_NO_FATAL_FAILURE(stream.pass(walk.next()));
   stream.encoded(walk.next());
   EXPECT_FALSE(stream.decoder.decode(stream.encoded(walk.next())));
@@ -258,7 +226,7 @@ TEST(GateMetaDecode, RefusesOtherForms) {
 
 TEST(GateMetaDecode, RefusesWhatFollowsTheEnd) {
   SceneWalk walk(8, 6);
-  Stream stream(walk.limits());
+  GateStream stream(walk.limits());
   ByteBuffer bytes = stream.encoded(walk.next());
   bytes.insert(bytes.end(), 8, std::byte{0});
   EXPECT_TRUE(stream.decoder.decode(bytes));
