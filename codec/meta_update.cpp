@@ -1,6 +1,7 @@
 #include "codec/meta_update.h"
 
 #include "codec/gate_meta.h"
+#include "codec/paper_meta.h"
 #include "codec/plain_meta.h"
 
 namespace atlaswire::codec {
@@ -13,6 +14,8 @@ const char* name(MetaCodecKind kind) {
       return "gate";
     case MetaCodecKind::kMirror:
       return "mirror";
+    case MetaCodecKind::kPaper:
+      return "paper";
   }
   return "unknown";
 }
@@ -32,6 +35,8 @@ std::unique_ptr<MetaEncoder> make_meta_encoder(MetaCodecKind kind, const MetaLim
       return std::make_unique<GateMetaEncoder>(limits);
     case MetaCodecKind::kMirror:
       return std::make_unique<GateMetaEncoder>(limits, BlockPositions::kDerived);
+    case MetaCodecKind::kPaper:
+      return std::make_unique<PaperMetaEncoder>(limits);
   }
   return nullptr;
 }
@@ -44,6 +49,8 @@ std::unique_ptr<MetaDecoder> make_meta_decoder(MetaCodecKind kind, const MetaLim
       return std::make_unique<GateMetaDecoder>(limits);
     case MetaCodecKind::kMirror:
       return std::make_unique<GateMetaDecoder>(limits, BlockPositions::kDerived);
+    case MetaCodecKind::kPaper:
+      return std::make_unique<PaperMetaDecoder>(limits);
   }
   return nullptr;
 }
@@ -67,7 +74,7 @@ const char* error_text(MetaError e) {
     case MetaError::kBadPatch:
       return "a patch with an impossible triangle count or drawing class";
     case MetaError::kBadOrder:
-      return "a moved patch that the same update adds or removes";
+      return "a vertex that comes twice, or a moved patch that the same update adds or removes";
     case MetaError::kOutOfStep:
       return "the meta update does not continue what this end knows";
   }

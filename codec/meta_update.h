@@ -92,16 +92,18 @@ class MetaDecoder {
 enum class MetaCodecKind : std::uint8_t {
   kPlain = 1,   ///< every update alone, zstd: simple, large
   kGate = 2,    ///< incremental: a quarter of the bytes, or less
+  kPaper = 3,   ///< every update alone, octree and exponential-Golomb codes, as [SAS] 6.5: to compare with
   kMirror = 4,  ///< kGate without the positions of blocks: the receiver runs the atlas's memory itself
 };
 
-/// All of them, those with the fewest bytes first.
-inline constexpr std::array kMetaCodecs{MetaCodecKind::kMirror, MetaCodecKind::kGate, MetaCodecKind::kPlain};
+/// All of them, those that a server prefers first.
+inline constexpr std::array kMetaCodecs{MetaCodecKind::kMirror, MetaCodecKind::kGate, MetaCodecKind::kPlain,
+                                        MetaCodecKind::kPaper};
 
 /// Its updates carry a LayoutCue.
 constexpr bool leaves_positions(MetaCodecKind kind) { return kind == MetaCodecKind::kMirror; }
 
-/// "plain", "gate", "mirror": as settings and reports call it.
+/// "plain", "gate", "paper", "mirror": as settings and reports call it.
 const char* name(MetaCodecKind kind);
 std::optional<MetaCodecKind> find_meta_codec(std::string_view name);
 

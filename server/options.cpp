@@ -101,7 +101,7 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
   group->add_option(
       "--meta-codec", raw.meta_codec,
       "How geometry travels to clients that know it: mirror (fewest bytes: they lay the atlas out "
-      "themselves), gate or plain");
+      "themselves), gate, plain or paper ([SAS] 6.5)");
   group->add_option("--reshade-interval", render.reshade_interval,
                     "Shade each block at least every N-th frame, 1..60: speed against stale reflections");
   group->add_option(
@@ -224,7 +224,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   demand_range("--reshade-interval", render.reshade_interval, 1U, 60U);
   if (s.grid_bits != 0) demand_range("--grid-bits", s.grid_bits, 8U, 20U);
   const auto meta_codec = codec::find_meta_codec(raw.meta_codec);
-  if (!meta_codec) refuse_option("--meta-codec", raw.meta_codec, "mirror, gate or plain");
+  if (!meta_codec) refuse_option("--meta-codec", raw.meta_codec, "mirror, gate, plain or paper");
   s.meta_codec = *meta_codec;
   apply_cover(raw.cover, s.cover);
 }
