@@ -1,10 +1,7 @@
 // Codecs of geometry side by side: on recorded streams (codec_record) and on whole scenes.
-#include "base/program.h"
 #include "bench/codec_rival.h"
 #include "bench/gate_profile.h"
 #include "bench/meta_recording.h"
-#include "render/scene/load.h"
-#include "server/replica_tracker.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <optional>
 
 using namespace atlaswire;
 using namespace atlaswire::bench;
@@ -102,7 +100,9 @@ std::vector<std::unique_ptr<CodecRival>> all_rivals(const codec::MetaLimits& lim
   rivals.push_back(make_naive_rival());
   rivals.push_back(make_draco_rival());
   rivals.push_back(make_meshopt_rival());
-  for (const codec::MetaCodecKind kind : codec::kMetaCodecs) rivals.push_back(make_own_rival(kind, limits));
+  for (const codec::MetaCodecKind kind : codec::kMetaCodecs) {
+    if (!leaves_positions(kind)) rivals.push_back(make_own_rival(kind, limits));
+  }
   return rivals;
 }
 
@@ -179,63 +179,69 @@ void profile(const MetaRecording& recording) {
                static_cast<double>(std::max<std::size_t>(1, recording.updates.size() - 1)));
 }
 
-/// All of a scene in one update, without blocks.
-void compare_whole(const std::string& name) {
-  auto scene = std::make_shared<const render::Scene>(render::load_scene(name).value());
-  server::ReplicaTracker tracker(scene, 0);
-  std::vector<render::PlacedPatch> patches;
-  for (std::uint32_t i = 0; i < scene->patches.size(); ++i) patches.push_back({PatchId{i}, {}});
-  const codec::MetaUpdate update = tracker.restart(FrameId{0}, patches);
+/// All of a scene in one update: ours against Draco's smallest, blocks aside.
+void compare_whole(const std::string& name, const MetaRecording& recording) {
   IncrementMaker maker;
-  const Increment increment = maker.next(update);
-  GateProfile gate(tracker.limits({256, 256}));
-  const GateProfile::Bits bits = gate.encode(update);
+  const Increment increment = maker.next(recording.updates.front());
+  GateProfile gate(recording.limits);
+  const GateProfile::Bits bits = gate.encode(recording.updates.front());
   const double ours = mesh_octets(bits);
   const auto draco = static_cast<double>(draco_size(increment.positions, increment.indices));
-  const auto triangles = static_cast<double>(increment.indices.size() / 3);
-  fmt::print("| {} | {} | {} | {:.0f} | {:.2f} | {:.0f} | {:.2f} | {:.3f} |\n",
-             std::filesystem::path(name).stem().string(), triangles, tracker.grid().bits, draco,
-             8 * draco / triangles, ours, 8 * ours / triangles, ours / draco);
-  print_topics_head();
-  print_topics("whole", bits, 1);
+  const auto triangles = static_cast<double>(increment.indices.size()) / 3;
+  fmt::print(
+      "\n| whole mesh | triangles | grid bits | Draco bytes | bits/triangle | gate bytes | bits/triangle | "
+      "ratio |\n|---|---|---|---|---|---|---|---|\n"
+      "| {} | {:.0f} | {} | {:.0f} | {:.2f} | {:.0f} | {:.2f} | {:.3f} |\n",
+      name, triangles, recording.limits.grid_bits, draco, 8 * draco / triangles, ours, 8 * ours / triangles,
+      ours / draco);
+}
+
+/// The same stream for a receiver that derives where blocks lie, if it was recorded beside (--requests).
+std::optional<MetaRecording> requests_beside(std::filesystem::path file) {
+  file.replace_extension(".requests");
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  MetaRecording recording = read_recording(file).value();
+  for (codec::MetaUpdate& update : recording.updates) update.cue.emplace();
+  return recording;
+}
+
+void compare(const std::filesystem::path& file, const std::string& only, bool topics,
+             std::vector<Row>& rows) {
+  const MetaRecording recording = read_recording(file).value();
+  const std::string name = file.stem().string();
+  if (recording.updates.size() == 1) return compare_whole(name, recording);
+  const auto take = [&](CodecRival& rival, const MetaRecording& updates) {
+    if (!only.empty() && rival.name() != only) return;
+    rows.push_back(run(rival, name, updates));
+    print(rows.back());
+  };
+  print_stream(name, recording);
+  for (const auto& rival : all_rivals(recording.limits)) take(*rival, recording);
+  if (const auto requests = requests_beside(file)) {
+    take(*make_own_rival(codec::MetaCodecKind::kMirror, requests->limits), *requests);
+  }
+  if (topics) profile(recording);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   std::vector<std::string> recordings;
-  std::vector<std::string> scenes;
   std::string csv;
   std::string only;
   bool topics = false;
-  CLI::App app("Compares codecs of geometry");
-  app.add_option("recordings", recordings, "Files of codec_record");
-  app.add_option("--whole", scenes, "Scenes to compare as one mesh each")->allow_extra_args(false);
+  CLI::App app("Compares codecs of geometry on recordings of codec_record");
+  app.add_option("recordings", recordings,
+                 "X.meta; for the mirror form also X.requests, recorded with --requests")
+      ->required();
   app.add_option("--csv", csv, "File to write figures to");
-  app.add_option("--only", only, "Only codecs of this name");
+  app.add_option("--only", only, "Only the codec of this name");
   app.add_flag("--topics", topics, "What the gate form's bits are spent on");
   CLI11_PARSE(app, argc, argv);
   try {
     std::vector<Row> rows;
-    for (const std::string& file : recordings) {
-      const MetaRecording recording = read_recording(file).value();
-      const std::string name = std::filesystem::path(file).stem().string();
-      print_stream(name, recording);
-      for (const auto& rival : all_rivals(recording.limits)) {
-        if (!only.empty() && rival->name() != only) continue;
-        rows.push_back(run(*rival, name, recording));
-        print(rows.back());
-      }
-      if (topics) profile(recording);
-    }
+    for (const std::string& file : recordings) compare(file, only, topics, rows);
     if (!csv.empty()) write_csv(rows, csv);
-    if (!scenes.empty()) {
-      fmt::print(
-          "\n| whole mesh | triangles | grid bits | Draco bytes | bits/triangle | gate bytes | bits/triangle "
-          "| ratio "
-          "|\n|---|---|---|---|---|---|---|---|\n");
-    }
-    for (const std::string& scene : scenes) compare_whole(scene);
   } catch (const std::exception& e) {
     fmt::print(stderr, "codec_bench: {}\n", e.what());
     return 1;

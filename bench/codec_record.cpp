@@ -5,12 +5,15 @@
 #include "render/gpu/open_device.h"
 #include "render/scene/camera_path.h"
 #include "render/scene/load.h"
+#include "render/scene/walk_order.h"
 #include "server/atlas_stream.h"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <numeric>
 
 using namespace atlaswire;
 
@@ -27,6 +30,7 @@ struct Options {
   std::uint32_t atlas = 1024;
   std::uint32_t grid_bits = 0;
   double turn_at = -1;
+  std::string whole;
   bool requests = false;
 };
 
@@ -39,6 +43,37 @@ Pose pose_at(const render::CameraPath& path, const Options& options, Duration no
   pose.orientation =
       glm::angleAxis(kTurnRate * to_seconds(now), glm::dvec3(0, 1, 0)) * glm::dquat(pose.orientation);
   return pose;
+}
+
+/// Numbers patches by a walk over the whole surface instead of chunk after chunk.
+void number_by_walk(const render::Scene& scene, codec::MetaUpdate& update) {
+  std::vector<render::TriangleGroup> groups(scene.patches.size());
+  for (std::size_t p = 0; p < groups.size(); ++p) {
+    groups[p].count = scene.patches[p].triangles;
+    std::ranges::transform(scene.patches[p].positions, groups[p].corners.begin(),
+                           [](VertexId v) { return value(v); });
+  }
+  std::vector<std::uint32_t> walk(groups.size());
+  std::iota(walk.begin(), walk.end(), 0U);
+  render::WalkOrder(scene.positions, groups).arrange(walk);
+  std::vector<codec::AddedPatch> walked;
+  for (const std::uint32_t patch : walk) {
+    walked.push_back(update.added[patch]);
+    walked.back().id = PatchId{static_cast<std::uint32_t>(walked.size() - 1)};
+  }
+  update.added = std::move(walked);
+}
+
+/// All of a scene in one update, without blocks.
+void record_whole(const Options& options) {
+  auto scene = std::make_shared<const render::Scene>(render::load_scene(options.scene).value());
+  server::ReplicaTracker tracker(scene, options.grid_bits);
+  std::vector<render::PlacedPatch> patches;
+  for (std::uint32_t i = 0; i < scene->patches.size(); ++i) patches.push_back({PatchId{i}, {}});
+  bench::MetaRecording recording{.limits = tracker.limits({options.atlas, options.atlas})};
+  recording.updates.push_back(tracker.restart(FrameId{0}, patches));
+  if (options.whole == "surface") number_by_walk(*scene, recording.updates.front());
+  bench::write_recording(recording, options.out);
 }
 
 void record(const Options& options) {
@@ -85,13 +120,17 @@ int main(int argc, char** argv) {
   app.add_option("--width", options.width, "Display pixels");
   app.add_option("--height", options.height, "Display pixels");
   app.add_option("--atlas", options.atlas, "Texels a side");
+  app.add_option("--whole", options.whole,
+                 "Instead of a stream all of the scene in one update, its patches numbered as in the scene "
+                 "(scene) or by a walk over the whole surface (surface)")
+      ->check(CLI::IsMember({"scene", "surface"}));
   app.add_option("--turn-at", options.turn_at,
                  "Stand where the path is at this second, and turn by 90 degrees a second");
   app.add_option("--grid-bits", options.grid_bits, "0: suited to the scene");
   app.add_flag("--requests", options.requests, "What patches ask for instead of the blocks they got");
   CLI11_PARSE(app, argc, argv);
   try {
-    record(options);
+    options.whole.empty() ? record(options) : record_whole(options);
   } catch (const std::exception& e) {
     fmt::print(stderr, "codec_record: {}\n", e.what());
     return 1;

@@ -14,7 +14,9 @@ class OwnRival final : public CodecRival {
  public:
   OwnRival(codec::MetaCodecKind kind, const codec::MetaLimits& limits)
       : kind_(kind), encoder_(make_meta_encoder(kind, limits)), decoder_(make_meta_decoder(kind, limits)) {
-    if (kind == codec::MetaCodecKind::kGate) profile_.emplace(limits);
+    if (kind == codec::MetaCodecKind::kGate || kind == codec::MetaCodecKind::kMirror) {
+      profile_.emplace(limits);
+    }
   }
   [[nodiscard]] std::string name() const override { return codec::name(kind_); }
   void encode(const Increment& increment) override {
