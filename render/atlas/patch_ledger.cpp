@@ -105,8 +105,8 @@ AtlasOutcome PatchLedger::report(LayoutChange& change) {
 void PatchLedger::report_changed(LayoutChange& change) {
   if (changed_.empty()) return;
   std::ranges::sort(changed_);
-  const auto twice = std::ranges::unique(changed_);
-  changed_.erase(twice.begin(), twice.end());
+  // Clang 14 cannot read libstdc++'s ranges::unique.
+  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   for (const std::uint32_t i : changed_) change.moved.push_back({next_[i].patch, next_[i].block});
   std::ranges::sort(change.moved, {}, &PlacedPatch::patch);
 }
