@@ -7,6 +7,7 @@
 #include "server/daemon.h"
 #include "server/mirror.h"
 #include "server/ready_file.h"
+#include "server/replica_tracker.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -50,9 +51,15 @@ void print_names(const char* what, const std::vector<Named>& all) {
   std::printf("  %zu named %s: %s\n", names.size(), what, fmt::format("{}", fmt::join(names, ", ")).c_str());
 }
 
-void explain_scene(const std::string& name) {
+std::string explain(const PositionGrid& grid) {
+  return fmt::format("position grid: {} bits an axis, a step of {:.3g} mm, error at most {:.3g} m", grid.bits,
+                     1e3 * grid.step, grid.max_error());
+}
+
+void explain_scene(const std::string& name, std::uint32_t grid_bits) {
   const auto scene = open_scene(name);
   std::printf("scene '%s'\n", scene->name.c_str());
+  std::printf("  %s\n", explain(server::scene_grid(*scene, grid_bits)).c_str());
   for (const std::string& line : render::explain(scene->requirements)) std::printf("  %s\n", line.c_str());
   print_names("materials", scene->materials);
   print_names("objects", scene->objects);
@@ -74,6 +81,7 @@ void serve(const server::DaemonSettings& settings, const std::function<Emphasis(
   spdlog::info("scene '{}': {} patches of {} triangles; device '{}'", scene->name, scene->patches.size(),
                scene->requirements.triangles, render::device_name(*device));
   server::AtlasSource source(settings.stream, *device, scene);
+  spdlog::info("{}", explain(source.description().grid));
   spdlog::info("warm after {:.1f} s, encoder {}", to_seconds(steady_now() - begun), source.encoder_name());
   if (settings.print_sdp) {
     std::fputs(server::mirror_sdp(*settings.mirror, scene->name, source.parameter_sets()).c_str(), stdout);
@@ -98,7 +106,7 @@ int body(int argc, char** argv) {
   if (options.mode == server::Mode::kListDevices) {
     print_devices();
   } else if (options.mode == server::Mode::kExplainScene) {
-    explain_scene(options.settings.scene);
+    explain_scene(options.settings.scene, options.settings.stream.grid_bits);
   } else {
     std::function<Emphasis()> reread;
     if (options.has_config) {
