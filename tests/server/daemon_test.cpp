@@ -67,6 +67,18 @@ TEST(Daemon, RefusesBeyondItsCapacityAndServesTheRest) {
   EXPECT_TRUE(first.run_until_frames(first.paired() + 5, 20s));
 }
 
+TEST(Daemon, TellsAllAnewToAClientThatIsOutOfStep) {
+  FakeSource source;
+  RunningDaemon daemon(quick_settings(), source);
+  RawClient client(daemon.port());
+  ASSERT_TRUE(client.run_until_frames(3, 20s));
+  EXPECT_EQ(source.watch.restarts, 1U);
+  client.send(proto::RestartRequest{FrameId{2}, "bent"});
+  EXPECT_TRUE(client.run_until([&] { return source.watch.restarts == 2; }, 20s));
+  EXPECT_TRUE(client.run_until_frames(client.paired() + 3, 20s));
+  EXPECT_FALSE(client.goodbye());
+}
+
 TEST(Daemon, ClosesConnectionsBeyondItsLimitPerAddress) {
   FakeSource source;
   auto settings = quick_settings();
