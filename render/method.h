@@ -36,8 +36,9 @@ struct FrameRequest {
   Camera camera;
   Duration cover{};    ///< predict up to this far ahead
   bool intra = false;  ///< the encoder will make an I-frame of it
-  /// Its layout, and all that follow, are to be a function of requests from this frame on, so that a receiver
-  /// can begin here to derive them; only with `intra`.
+  /// Somebody knows nothing yet: the layout, and all that follow, are to be a function of requests from this
+  /// frame on, so that a receiver can begin here to derive them, and admission begins anew; only with
+  /// `intra`.
   bool restart = false;
   ViewHints hints;
 };
@@ -79,6 +80,7 @@ struct RenderedFrame {
   AtlasUsage usage;
   LayoutCounts layout;
   std::uint32_t visible_patches = 0;
+  std::uint32_t waiting_patches = 0;  ///< of these, left for later frames (MethodSettings::most_new_patches)
   std::uint64_t shaded_texels = 0;
   double bias = 0;  ///< [SAS] eq. 3; below 0 the atlas has room to spare
   RenderTimings timings;
@@ -111,7 +113,8 @@ struct MethodSettings {
   double id_scale = 1.0;  ///< id buffer pixels per display pixel along a side; small triangles against time
   std::uint32_t max_views = 2;  ///< visible sets united per frame
   Duration prediction_step = std::chrono::microseconds(33'333);
-  double max_oversampling = 4.0;       ///< texels a pixel may get when the atlas has room
+  double max_oversampling = 4.0;          ///< texels a pixel may get when the atlas has room
+  std::uint32_t most_new_patches = 2048;  ///< a frame may show for the first time, the largest first; 0: all
   std::uint32_t reshade_interval = 1;  ///< each block is shaded at least every n-th frame; new ones at once
   std::uint32_t frames_in_flight = 3;
   Emphasis emphasis;  ///< until Method::set_emphasis()

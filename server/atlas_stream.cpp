@@ -61,7 +61,7 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
                                        .camera = request.camera,
                                        .cover = request.cover,
                                        .intra = prepared.intra,
-                                       .restart = restart && leaves_positions(told_as_),
+                                       .restart = restart,
                                        .hints = request.hints});
   if (layout_) {
     layout_->observe(*prepared.rendered.change);
@@ -126,8 +126,11 @@ Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
   report.usage = prepared.rendered.usage;
   report.layout = prepared.rendered.layout;
   report.visible_patches = prepared.rendered.visible_patches;
+  report.waiting_patches = prepared.rendered.waiting_patches;
   report.added_patches = static_cast<std::uint32_t>(prepared.update.added.size());
   report.removed_patches = static_cast<std::uint32_t>(prepared.update.removed.size());
+  report.new_vertices = static_cast<std::uint32_t>(prepared.update.vertices.size());
+  for (const codec::AddedPatch& patch : prepared.update.added) report.added_triangles += patch.triangles;
   report.shaded_texels = prepared.rendered.shaded_texels;
   report.bias = prepared.rendered.bias;
   return frame;

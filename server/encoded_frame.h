@@ -51,8 +51,11 @@ struct FrameReport {
   render::AtlasUsage usage;
   render::LayoutCounts layout;
   std::uint32_t visible_patches = 0;
+  std::uint32_t waiting_patches = 0;  ///< visible, but told in later frames
   std::uint32_t added_patches = 0;
   std::uint32_t removed_patches = 0;
+  std::uint32_t new_vertices = 0;     ///< told in this frame
+  std::uint32_t added_triangles = 0;  ///< of the patches added
   std::uint64_t shaded_texels = 0;
   double bias = 0;
 };

@@ -17,7 +17,7 @@ StatsCsv::StatsCsv(const std::string& path) {
            "conversion_ms,render_ms,encoder_wait_ms,encode_ms,session_wait_ms,send_ms,cover_ms,video_bytes,"
            "meta_bytes,visible_patches,added_patches,removed_patches,shaded_texels,bias,allocated_texels,"
            "partial_tail_texels,on_stacks_texels,inaccessible_texels,free_texels,moved_patches,refused_"
-           "patches,atlas_reset\n";
+           "patches,atlas_reset,waiting_patches\n";
 }
 
 void StatsCsv::add(SessionId session, const Departure& d) {
@@ -37,7 +37,8 @@ void StatsCsv::add(SessionId session, const Departure& d) {
                        r.added_patches, r.removed_patches, r.shaded_texels, r.bias);
   file_ << fmt::format("{},{},{},{},{},", r.usage.allocated, r.usage.partial_tail, r.usage.on_stacks,
                        r.usage.inaccessible, r.usage.free);
-  file_ << fmt::format("{},{},{}\n", r.layout.moved, r.layout.refused, r.layout.reset ? 1 : 0);
+  file_ << fmt::format("{},{},{},{}\n", r.layout.moved, r.layout.refused, r.layout.reset ? 1 : 0,
+                       r.waiting_patches);
 }
 
 void StatsLine::add(const Departure& d) {

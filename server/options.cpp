@@ -102,6 +102,10 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
       "--meta-codec", raw.meta_codec,
       "How geometry travels to clients that know it: mirror (fewest bytes: they lay the atlas out "
       "themselves), gate, plain or paper ([SAS] 6.5)");
+  group->add_option(
+      "--new-patches", render.most_new_patches,
+      "Patches a frame may show for the first time, the largest first, 16..1000000, or 0: all: an "
+      "early first picture against one that is whole at once");
   group->add_option("--reshade-interval", render.reshade_interval,
                     "Shade each block at least every N-th frame, 1..60: speed against stale reflections");
   group->add_option(
@@ -221,6 +225,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   render.allocator_kind = parse_allocator(raw.allocator);
   render.emphasis = parse_emphasis(raw);
   demand_range("--level-hysteresis", render.level_hysteresis, 0.0, 1.0);
+  if (render.most_new_patches != 0) demand_range("--new-patches", render.most_new_patches, 16U, 1'000'000U);
   demand_range("--reshade-interval", render.reshade_interval, 1U, 60U);
   if (s.grid_bits != 0) demand_range("--grid-bits", s.grid_bits, 8U, 20U);
   const auto meta_codec = codec::find_meta_codec(raw.meta_codec);

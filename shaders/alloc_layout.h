@@ -81,6 +81,7 @@ struct Constants {
   uint high_superblocks;  // AtlasDemand
   uint capacity;          // the atlas's area
   uint regrow_limit;
+  uint most_new;  // patches never admitted before that a frame admits
 };
 
 /// A patch's place in the atlas.
@@ -164,14 +165,15 @@ struct Report {
   uint on_stacks;
   uint free_area;
   uint refused;
+  uint waiting;  // patches that were not admitted
 };
 
 #undef AW_CONST
 #ifdef __cplusplus
-static_assert(sizeof(Constants) == 40 && sizeof(Record) == 8 && sizeof(Item) == 16);
+static_assert(sizeof(Constants) == 44 && sizeof(Record) == 8 && sizeof(Item) == 16);
 static_assert(sizeof(Superblock) == 16 && sizeof(Segment) == 16 && sizeof(Change) == 12);
 static_assert(offsetof(Store, events) == 32 && offsetof(Store, wanted) == 80);
-static_assert(sizeof(Round) == 3 * 91 * 4 && sizeof(Report) == 32);
+static_assert(sizeof(Round) == 3 * 91 * 4 && sizeof(Report) == 36);
 static_assert(offsetof(Store, rounds) == 80 + 4 * (91 * 9 + 26));
 }  // namespace atlaswire::render::alloc
 #endif

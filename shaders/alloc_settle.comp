@@ -69,7 +69,8 @@ void main() {
   store.wants_reset = reset_helps(visible) ? 1u : 0u;
   report = Report(store.events, store.reset, store.wants_reset, store.allocated, in_tails,
                   on_stacks + store.grown_area,
-                  store.free_count << (2u * (set.max_log2 - set.min_log2)), store.refused);
+                  store.free_count << (2u * (set.max_log2 - set.min_log2)), store.refused,
+                  set.most_new != 0u ? report.waiting : 0u);
   store.deferred = store.grown;
   store.grown_area = 0u;
   store.refused = 0u;

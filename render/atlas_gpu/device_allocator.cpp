@@ -26,9 +26,9 @@ Block block_of(const alloc::Change& change) {
 }  // namespace
 
 DeviceAllocator::DeviceAllocator(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count,
-                                 SlotOrder order, Residence wants)
+                                 SlotOrder order, Residence wants, std::uint32_t most_new)
     : settings_(checked(settings)),
-      store_(device, settings, patch_count, order, wants),
+      store_(device, settings, patch_count, order, wants, most_new),
       context_(device, "atlas memory"),
       timer_(device, "atlas memory timer", 1),
       order_(order),

@@ -17,9 +17,10 @@ namespace atlaswire::render {
 class DeviceAllocator final : public AtlasAllocator {
  public:
   /// Throws ProgramError for settings that do not fit together or the device. `wants`: kDevice where earlier
-  /// passes write them.
+  /// passes write them. `most_new`: as Admission has it; what waits is not asked for.
   DeviceAllocator(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count,
-                  SlotOrder order = SlotOrder::kRanked, Residence wants = Residence::kUpload);
+                  SlotOrder order = SlotOrder::kRanked, Residence wants = Residence::kUpload,
+                  std::uint32_t most_new = 0);
 
   /// Only with wants on the host.
   const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) override;
@@ -29,6 +30,9 @@ class DeviceAllocator final : public AtlasAllocator {
   void record(const vk::raii::CommandBuffer& commands, bool may_reset);
   /// The recorded frame's change, once it was waited for.
   const LayoutChange& collect();
+
+  /// Patches that the last frame did not admit.
+  [[nodiscard]] std::uint32_t waiting() const { return report_.waiting; }
 
   /// What all update() calls took on the device; zero where it has no timestamps.
   [[nodiscard]] Duration device_time() const { return device_time_; }

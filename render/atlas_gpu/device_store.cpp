@@ -18,7 +18,7 @@ using namespace alloc;
 
 LevelNumbers numbers_of(const AllocatorSettings& s) { return {s.min_block_log2, s.superblock_log2}; }
 
-Constants constants_of(const AllocatorSettings& s, std::uint32_t patches) {
+Constants constants_of(const AllocatorSettings& s, std::uint32_t patches, std::uint32_t most_new) {
   const std::uint32_t unit_log2 = 2 * s.min_block_log2;
   const auto superblocks = static_cast<std::uint32_t>(s.atlas.area() >> (2 * s.superblock_log2));
   return {.patches = patches,
@@ -29,7 +29,8 @@ Constants constants_of(const AllocatorSettings& s, std::uint32_t patches) {
           .superblocks = superblocks,
           .high_superblocks = static_cast<std::uint32_t>(std::floor(s.high_water * superblocks)),
           .capacity = static_cast<std::uint32_t>(s.atlas.area() >> unit_log2),
-          .regrow_limit = static_cast<std::uint32_t>(high_water_texels(s) >> unit_log2)};
+          .regrow_limit = static_cast<std::uint32_t>(high_water_texels(s) >> unit_log2),
+          .most_new = most_new};
 }
 
 /// A level's stack never holds more than the atlas holds blocks of it.
@@ -47,15 +48,15 @@ std::size_t stack_total(const AllocatorSettings& s) {
 
 std::vector<Binding> bindings() {
   std::vector<Binding> all;
-  for (std::uint32_t i = 0; i < 13; ++i) all.push_back({.binding = i});
+  for (std::uint32_t i = 0; i < 14; ++i) all.push_back({.binding = i});
   return all;
 }
 
 }  // namespace
 
 DeviceStore::DeviceStore(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count,
-                         SlotOrder order, Residence wants)
-    : constants_(constants_of(settings, patch_count)),
+                         SlotOrder order, Residence wants, std::uint32_t most_new)
+    : constants_(constants_of(settings, patch_count, most_new)),
       order_(order),
       store_(make(device, "store", sizeof(Store), Residence::kDevice)),
       wants_(make(device, "wants", sizeof(uint) * patch_count, wants)),
@@ -74,16 +75,19 @@ DeviceStore::DeviceStore(Device& device, const AllocatorSettings& settings, std:
       leftovers_(make(device, "leftovers", sizeof(uint) * kMostLevels * kMostLeftovers, Residence::kDevice)),
       changes_(make(device, "changes", sizeof(Change) * patch_count, Residence::kReadback)),
       report_(make(device, "report", sizeof(Report), Residence::kReadback)),
+      admitted_(
+          make(device, "admitted", sizeof(uint) * (most_new == 0 ? 1 : patch_count), Residence::kDevice)),
       layout_(device, "atlas memory", bindings()),
       sets_(device, "atlas memory", layout_) {
   const Buffer* buffers[] = {&store_, &wants_,  &records_,  &items_,     &superblocks_, &stacks_, &deferred_,
-                             &tiles_, &events_, &segments_, &leftovers_, &changes_,     &report_};
+                             &tiles_, &events_, &segments_, &leftovers_, &changes_,     &report_, &admitted_};
   std::uint32_t binding = 0;
   for (const Buffer* buffer : buffers) sets_.write(0, binding++, *buffer);
   upload_initial_state(device, settings);
 
   using Extent = Pass::Extent;
   const bool ranked = order == SlotOrder::kRanked;
+  if (most_new != 0) add_pass(device, "admit", shaders::alloc_admit_comp, Extent::kOne);
   add_pass(device, "request", shaders::alloc_request_comp, Extent::kPatches);
   add_pass(device, "reclaim", shaders::alloc_reclaim_comp, Extent::kOne);
   if (ranked) add_pass(device, "list", shaders::alloc_list_comp, Extent::kEventWords);
@@ -141,6 +145,7 @@ void DeviceStore::upload_initial_state(Device& device, const AllocatorSettings& 
     fill(superblocks_, bytes(superblocks));
     commands.fillBuffer(wants_.handle(), 0, VK_WHOLE_SIZE, 0);
     commands.fillBuffer(records_.handle(), 0, VK_WHOLE_SIZE, 0);
+    commands.fillBuffer(admitted_.handle(), 0, VK_WHOLE_SIZE, 0);
     commands.fillBuffer(events_.handle(), 0, VK_WHOLE_SIZE, 0);
     transfer_to_shaders(commands);
   });

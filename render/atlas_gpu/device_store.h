@@ -22,6 +22,7 @@ enum class SlotOrder : std::uint8_t {
 /// The atlas's memory on the device ([SAS] 4.2): the sequential model's arithmetic as compute passes, with no
 /// host in between. Any subgroup size will do.
 ///
+///   admit      patches never shown before, so many a frame         (if there is a limit)
 ///   request    every patch: who gives a block back, who asks for one
 ///   reclaim    superblocks without blocks become free; or a reset frees all
 ///   list       those patches in ascending order                            (ranked only)
@@ -36,8 +37,9 @@ class DeviceStore {
  public:
   /// Settings are checked (check_allocator_settings). Throws ProgramError if the device's buffers are too
   /// small for such an atlas.
+  /// `most_new`: as Admission has it.
   DeviceStore(Device& device, const AllocatorSettings& settings, std::uint32_t patch_count, SlotOrder order,
-              Residence wants);
+              Residence wants, std::uint32_t most_new);
 
   /// What each patch wants (alloc_layout.h), hidden at first: written by the host (if its residence is
   /// kUpload) or by an earlier pass before record().
@@ -76,6 +78,7 @@ class DeviceStore {
   Buffer leftovers_;
   Buffer changes_;
   Buffer report_;
+  Buffer admitted_;
   DescriptorLayout layout_;
   DescriptorSets sets_;
   std::vector<Pass> passes_;

@@ -25,6 +25,8 @@ class LayoutPlanner {
   virtual void restart() = 0;
   /// What the frame's patches asked for, ascending; valid until the next.
   [[nodiscard]] virtual std::span<const BlockRequest> requests() const = 0;
+  /// Visible patches that wait to be admitted.
+  [[nodiscard]] virtual std::uint32_t waiting() const = 0;
   /// What level selection did in the frame.
   [[nodiscard]] virtual LevelStats levels() const = 0;
   /// How long record()'s work took on the device.
@@ -33,9 +35,10 @@ class LayoutPlanner {
 };
 
 /// Where the device is a CPU, kAuto is the sequential model: it needs a tenth of the passes' time there. Any
-/// strategy but kS0 is on the host, whatever the kind.
+/// strategy but kS0 is on the host, whatever the kind. `most_new`: as Admission has it.
 std::unique_ptr<LayoutPlanner> make_layout_planner(Device& device, const VisibilityPass& visibility,
                                                    const LevelSettings& settings, std::uint32_t patch_count,
-                                                   AllocatorKind kind, Strategy strategy);
+                                                   AllocatorKind kind, Strategy strategy,
+                                                   std::uint32_t most_new);
 
 }  // namespace atlaswire::render

@@ -78,7 +78,8 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
       visibility_(device, scene_gpu_, visibility_settings(settings_)),
       planner_(make_layout_planner(device, visibility_, level_settings(settings_),
                                    static_cast<std::uint32_t>(scene_->patches.size()),
-                                   settings_.allocator_kind, settings_.strategy)),
+                                   settings_.allocator_kind, settings_.strategy,
+                                   settings_.most_new_patches)),
       freed_(settings_.atlas, settings_.allocator.min_block_log2,
              static_cast<std::uint32_t>(scene_->patches.size())),
       shading_(device, scene_gpu_, settings_.atlas, settings_.frames_in_flight),
@@ -112,6 +113,7 @@ RenderedFrame SasMethod::render(const FrameRequest& request) {
   frame.layout = counts_of(change);
   frame.usage = planner_->allocator().usage();
   frame.visible_patches = levels.visible;
+  frame.waiting_patches = planner_->waiting();
   frame.bias = levels.bias;
   ++frames_;
   return frame;

@@ -1,6 +1,7 @@
 #include "render/atlas_gpu/device_allocator.h"
 
 #include "base/program.h"
+#include "render/atlas/admission.h"
 #include "tests/render/atlas/layout_checker.h"
 #include "tests/render/gpu/gpu_fixture.h"
 
@@ -150,6 +151,28 @@ TEST_F(DeviceAllocatorTest, RestartsAsTheModelDoes) {
     const LayoutChange& on_device = allocator.update(visible, frame % 5 == 0);
     ASSERT_EQ(difference(allocator, on_device, *model, model->update(visible, frame % 5 == 0)), "")
         << "frame " << frame;
+  }
+}
+
+TEST_F(DeviceAllocatorTest, AdmitsAsTheHostDoes) {
+  const auto settings = small_atlas();
+  for (const std::uint32_t most_new : {1U, 16U, 100U}) {
+    DeviceAllocator allocator(device(), settings, 600, SlotOrder::kRanked, Residence::kUpload, most_new);
+    Admission admission(most_new, 600);
+    const auto model = make_sequential_allocator(settings, 600);
+    DriftingScene scene(9, 600, settings);
+    for (int frame = 0; frame < 60; ++frame) {
+      auto visible = scene.step(frame == 0 ? 1.0 : 0.1, 0.6, 4);
+      if (frame == 30) {
+        allocator.restart();
+        model->restart();
+        admission.restart();
+      }
+      const LayoutChange& on_device = allocator.update(visible, frame % 5 == 0);
+      EXPECT_EQ(allocator.waiting(), admission.admit(visible));
+      ASSERT_EQ(difference(allocator, on_device, *model, model->update(visible, frame % 5 == 0)), "")
+          << most_new << ", frame " << frame;
+    }
   }
 }
 
