@@ -31,6 +31,7 @@ struct Options {
   std::uint32_t grid_bits = 0;
   double turn_at = -1;
   std::string whole;
+  std::uint32_t new_patches = 0;
   bool requests = false;
 };
 
@@ -85,6 +86,7 @@ void record(const Options& options) {
   settings.grid_bits = options.grid_bits;
   settings.meta_codec = options.requests ? codec::MetaCodecKind::kMirror : codec::MetaCodecKind::kGate;
   settings.max_fps = options.rate;
+  settings.render.most_new_patches = options.new_patches;
   settings.video.encoder = "raw";
   settings.video.intra_interval = 5;
   server::AtlasStream stream(settings, scene, render::make_method("sas", *device, scene, settings.render));
@@ -127,6 +129,7 @@ int main(int argc, char** argv) {
   app.add_option("--turn-at", options.turn_at,
                  "Stand where the path is at this second, and turn by 90 degrees a second");
   app.add_option("--grid-bits", options.grid_bits, "0: suited to the scene");
+  app.add_option("--new-patches", options.new_patches, "That a frame may show for the first time; 0: all");
   app.add_flag("--requests", options.requests, "What patches ask for instead of the blocks they got");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -45,6 +45,7 @@ void DirectCarrier::carry(std::int64_t frame) {
 
 void DirectCarrier::add_figures(std::vector<Figure>& figures) const {
   for (const char* name : {"frames_lost", "packets_lost_percent"}) figures.push_back({name, 0.0});
+  figures.push_back({"first_picture_ms", to_ms(latency_)});
 }
 
 }  // namespace atlaswire::lab

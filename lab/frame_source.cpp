@@ -2,6 +2,7 @@
 
 #include "base/program.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -67,7 +68,13 @@ server::EncodedFrame FrameSource::make(PoseId id, const Pose& head, const FrameT
 }
 
 void FrameSource::count(const server::EncodedFrame& frame) {
-  if (frames_++ == 0) first_meta_bytes_ = frame.meta.size();
+  if (frames_ == 0) {
+    first_meta_bytes_ = frame.meta.size();
+    first_ = frame.report;
+  }
+  if (frames_until_whole_ == frames_ && frame.report.waiting_patches != 0) ++frames_until_whole_;
+  ++frames_;
+  largest_meta_bytes_ = std::max<std::uint64_t>(largest_meta_bytes_, frame.meta.size());
   video_bytes_ += frame.video.size();
   meta_bytes_ += frame.meta.size();
   if (budget_) budget_->on_frame(frame.meta.size());
@@ -96,6 +103,15 @@ void FrameSource::add_figures(Duration streamed, std::vector<Figure>& figures) c
   figures.push_back({"meta_mbps", mbps(meta_bytes_)});
   figures.push_back({"total_mbps", video + mbps(meta_bytes_)});
   figures.push_back({"first_meta_kb", 1e-3 * static_cast<double>(first_meta_bytes_)});
+  figures.push_back({"largest_meta_kb", 1e-3 * static_cast<double>(largest_meta_bytes_)});
+  figures.push_back({"frames_until_whole", of_atlas(static_cast<double>(frames_until_whole_))});
+  const auto first_bits = [&](std::uint32_t count) {
+    return count == 0 ? kNotApplicable : 8.0 * static_cast<double>(first_meta_bytes_) / count;
+  };
+  figures.push_back({"grid_error_mm", of_atlas(1e3 * contender_->description().grid.max_error())});
+  figures.push_back({"first_bits_per_vertex", first_bits(first_.new_vertices)});
+  figures.push_back({"first_bits_per_triangle", first_bits(first_.added_triangles)});
+  figures.push_back({"first_bits_per_patch", first_bits(first_.added_patches)});
   figures.push_back({"shaded_mpix_per_s", 1e-6 * eyes_ * static_cast<double>(shaded_texels_) / seconds});
   figures.push_back({"visible_patches", of_atlas(mean(static_cast<double>(visible_patches_), frames_))});
   figures.push_back({"atlas_used", of_atlas(mean(used_share_, frames_))});

@@ -57,7 +57,10 @@ class FrameSource {
   std::uint64_t frames_ = 0;
   std::uint64_t video_bytes_ = 0;
   std::uint64_t meta_bytes_ = 0;
+  std::uint64_t largest_meta_bytes_ = 0;  ///< of one frame
   std::uint64_t first_meta_bytes_ = 0;
+  server::FrameReport first_;             ///< the first frame's
+  std::uint64_t frames_until_whole_ = 0;  ///< before the first one that left no patch for later
   std::uint64_t shaded_texels_ = 0;
   std::uint64_t visible_patches_ = 0;
   double bias_ = 0;

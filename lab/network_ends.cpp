@@ -207,10 +207,22 @@ void ClientEnd::collect(Time now) {
 void ClientEnd::decode(Time now) {
   for (; !waiting_.empty() && waiting_.front().due <= now; waiting_.pop_front()) {
     const Waiting& next = waiting_.front();
-    if (next.update) contender_->on_update(*next.update);
-    if (next.frame) contender_->on_frame(*next.frame);
+    if (next.update) {
+      contender_->on_update(*next.update);
+      note_half(next.update->update.meta.frame, now);
+    }
+    if (next.frame) {
+      contender_->on_frame(*next.frame);
+      note_half(next.frame->frame, now);
+    }
     if (contender_->take_refresh()) session_.on_decode_failed();
   }
+}
+
+void ClientEnd::note_half(FrameId frame, Time now) {
+  if (first_whole_ || halves_.insert(frame).second) return;
+  first_whole_ = now;
+  halves_.clear();
 }
 
 std::vector<netsim::Outgoing> ClientEnd::take_outgoing() {

@@ -13,6 +13,7 @@
 
 #include <deque>
 #include <optional>
+#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -74,6 +75,8 @@ class ClientEnd final : public netsim::Endpoint {
   void wake(Time now) override;
   std::vector<netsim::Outgoing> take_outgoing() override;
 
+  /// When the first frame had come whole, picture and update, and was decoded; nullopt: none yet.
+  [[nodiscard]] std::optional<Time> first_whole_frame() const { return first_whole_; }
   /// When the pose was sampled that a delivered frame was made for.
   [[nodiscard]] Time posed(FrameId frame) const { return posed_.at(frame); }
   [[nodiscard]] const client::Session& session() const { return session_; }
@@ -88,6 +91,7 @@ class ClientEnd final : public netsim::Endpoint {
   void sample_pose(Time now);
   void collect(Time now);
   void decode(Time now);
+  void note_half(FrameId frame, Time now);
 
   Contender* contender_;
   const HeadMotion* motion_;
@@ -99,6 +103,8 @@ class ClientEnd final : public netsim::Endpoint {
   Time next_pose_;
   std::deque<Waiting> waiting_;
   std::unordered_map<FrameId, Time> posed_;
+  std::set<FrameId> halves_;  ///< frames of which the update or the picture has come, until one is whole
+  std::optional<Time> first_whole_;
 };
 
 }  // namespace atlaswire::lab

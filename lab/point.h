@@ -33,6 +33,8 @@ struct PointSettings {
   std::string strategy = "S0";              ///< of the atlas's memory: render::strategies() (sas)
   std::uint32_t reshade_interval = 1;       ///< frames (sas)
   std::uint32_t grid_bits = 0;              ///< of the replica's grid; 0: suited to the scene (sas)
+  std::string meta_codec = "mirror";        ///< how geometry travels: "mirror", "gate" or "plain" (sas)
+  std::uint32_t new_patches = 0;            ///< a frame may show for the first time; 0: all (sas)
   // Time and network.
   double server_hz = 30;   ///< frames a second
   double client_hz = 120;  ///< displayed frames a second

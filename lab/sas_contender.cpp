@@ -32,6 +32,8 @@ server::StreamSettings stream_settings(const PointSettings& point) {
   s.video = video_settings(point);
   s.max_fps = point.server_hz;
   s.grid_bits = point.grid_bits;
+  s.render.most_new_patches = point.new_patches;
+  s.meta_codec = codec::find_meta_codec(point.meta_codec).value();  // keys.cpp has checked it
   return s;
 }
 

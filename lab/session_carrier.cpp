@@ -49,6 +49,9 @@ void SessionCarrier::add_figures(std::vector<Figure>& figures) const {
   const double lost = std::max(0.0, static_cast<double>(packets.lost));
   const double expected = static_cast<double>(frames.packets) + lost;
   figures.push_back({"packets_lost_percent", expected > 0 ? 100 * lost / expected : 0.0});
+  const auto start = server_.first_frame();
+  const auto whole = client_.first_whole_frame();
+  figures.push_back({"first_picture_ms", start && whole ? to_ms(*whole - *start) : kNotApplicable});
 }
 
 }  // namespace atlaswire::lab

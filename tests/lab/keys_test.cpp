@@ -36,7 +36,7 @@ TEST(Keys, EveryMemberOfTheSettingsHasAKey) {
   for (const Key& key : keys()) {
     const std::string before = value_text(key, s);
     for (const char* text :
-         {"true", "false", "medium", "atw", "coded", "other", "64x64", "9", "2", "0.5", "1.5"}) {
+         {"true", "false", "medium", "atw", "coded", "gate", "other", "64x64", "9", "2", "0.5", "1.5"}) {
       if (set_value(key, text, s).has_value() && value_text(key, s) != before) break;
     }
     EXPECT_NE(value_text(key, s), before) << key.name;
