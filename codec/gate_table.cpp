@@ -26,6 +26,16 @@ void GateTable::add(const Outline& patch) {
   }
 }
 
+/// Most vertices have no gate or one, and lie close together in memory; an index does not.
+std::uint32_t GateTable::find(std::uint32_t from, std::uint32_t to) const {
+  std::uint32_t looked = 0;
+  for (std::uint32_t number = first_leaving(from); number != kNone; number = next_leaving(number)) {
+    if (links_[number].gate.to == to) return number;
+    if (++looked == kFewLeaving) return index_.find(key_of(from, to));
+  }
+  return kNone;
+}
+
 void GateTable::open(const Gate& gate) {
   std::uint32_t number = static_cast<std::uint32_t>(links_.size());
   if (unused_.empty()) {

@@ -44,9 +44,7 @@ class GateTable {
   void add(const Outline& patch);
 
   /// The open gate of a directed edge, or kNone.
-  [[nodiscard]] std::uint32_t find(std::uint32_t from, std::uint32_t to) const {
-    return index_.find(key_of(from, to));
-  }
+  [[nodiscard]] std::uint32_t find(std::uint32_t from, std::uint32_t to) const;
   [[nodiscard]] const Gate& gate(std::uint32_t number) const { return links_[number].gate; }
   /// Notes that a new patch was not attached there.
   void refuse(std::uint32_t number) {
@@ -82,6 +80,8 @@ class GateTable {
   static std::uint32_t first_of(const Heads& heads, std::uint32_t vertex) {
     return vertex < heads.size() ? heads[vertex] : kNone;
   }
+  static constexpr std::uint32_t kFewLeaving = 6;  ///< gates looked through before the index is asked
+
   void open(const Gate& gate);
   void close(std::uint32_t number);
   void link(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number);
