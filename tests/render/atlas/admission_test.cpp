@@ -15,7 +15,8 @@ using ::testing::IsEmpty;
 
 std::vector<std::uint32_t> admitted(Admission& admission, std::vector<BlockRequest> requests) {
   const std::size_t asked = requests.size();
-  EXPECT_EQ(admission.admit(requests), asked - requests.size());
+  const std::uint32_t waiting = admission.admit(requests);
+  EXPECT_EQ(waiting, asked - requests.size());
   std::vector<std::uint32_t> patches;
   for (const BlockRequest& r : requests) patches.push_back(value(r.patch));
   return patches;

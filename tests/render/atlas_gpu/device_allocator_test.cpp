@@ -169,7 +169,8 @@ TEST_F(DeviceAllocatorTest, AdmitsAsTheHostDoes) {
         admission.restart();
       }
       const LayoutChange& on_device = allocator.update(visible, frame % 5 == 0);
-      EXPECT_EQ(allocator.waiting(), admission.admit(visible));
+      const std::uint32_t waiting = admission.admit(visible);
+      EXPECT_EQ(allocator.waiting(), waiting);
       ASSERT_EQ(difference(allocator, on_device, *model, model->update(visible, frame % 5 == 0)), "")
           << most_new << ", frame " << frame;
     }
