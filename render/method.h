@@ -114,7 +114,7 @@ struct MethodSettings {
   std::uint32_t max_views = 2;  ///< visible sets united per frame
   Duration prediction_step = std::chrono::microseconds(33'333);
   double max_oversampling = 4.0;          ///< texels a pixel may get when the atlas has room
-  std::uint32_t most_new_patches = 2048;  ///< a frame may show for the first time, the largest first; 0: all
+  std::uint32_t most_new_patches = 4096;  ///< a frame may show for the first time, the largest first; 0: all
   std::uint32_t reshade_interval = 1;  ///< each block is shaded at least every n-th frame; new ones at once
   std::uint32_t frames_in_flight = 3;
   Emphasis emphasis;  ///< until Method::set_emphasis()
