@@ -35,13 +35,13 @@ TEST(Keys, EveryMemberOfTheSettingsHasAKey) {
   PointSettings s;
   for (const Key& key : keys()) {
     const std::string before = value_text(key, s);
-    for (const char* text :
-         {"true", "false", "medium", "atw", "coded", "gate", "other", "64x64", "9", "2", "0.5", "1.5"}) {
+    for (const char* text : {"true", "false", "medium", "atw", "coded", "gate", "repack", "other", "64x64",
+                             "9", "2", "0.5", "1.5"}) {
       if (set_value(key, text, s).has_value() && value_text(key, s) != before) break;
     }
     EXPECT_NE(value_text(key, s), before) << key.name;
   }
-  EXPECT_EQ(keys().size(), 36U);  // members of PointSettings
+  EXPECT_EQ(keys().size(), 38U);  // members of PointSettings
 }
 
 TEST(Keys, RealNumbersSurviveExactly) {
