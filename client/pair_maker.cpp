@@ -104,7 +104,7 @@ Result<codec::MetaUpdate> PairMaker::read(ByteView bytes) {
 /// Codecs that keep state can come back after an error, if the server tells all anew.
 void PairMaker::lose_step(FrameId frame, const Error& why) {
   if (out_of_step_ && why.code == codec::MetaError::kOutOfStep) return;  // it is asked for already
-  const bool keeps_state = stream_.meta_codec != static_cast<std::uint32_t>(codec::MetaCodecKind::kPlain);
+  const bool keeps_state = codec::keeps_state(static_cast<codec::MetaCodecKind>(stream_.meta_codec));
   const std::string text = fmt::format("meta update {}: {}", value(frame), why.message());
   if (!keeps_state || out_of_step_ || restarts_in_a_row_ == kMostRestarts) return break_with(text);
   spdlog::warn("{}; asking for all anew", text);

@@ -100,6 +100,10 @@ enum class MetaCodecKind : std::uint8_t {
 inline constexpr std::array kMetaCodecs{MetaCodecKind::kMirror, MetaCodecKind::kGate, MetaCodecKind::kPlain,
                                         MetaCodecKind::kPaper};
 
+/// Each of its updates continues those before: after an error only one with `reset` can be read.
+constexpr bool keeps_state(MetaCodecKind kind) {
+  return kind == MetaCodecKind::kGate || kind == MetaCodecKind::kMirror;
+}
 /// Its updates carry a LayoutCue.
 constexpr bool leaves_positions(MetaCodecKind kind) { return kind == MetaCodecKind::kMirror; }
 
