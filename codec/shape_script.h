@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/grid.h"
+#include "codec/corner_script.h"
 #include "codec/gate_state.h"
 #include "codec/level_script.h"
 #include "codec/meta_update.h"
@@ -9,8 +10,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
-#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,7 +33,11 @@ template <class Coder>
 class ShapeScript {
  public:
   ShapeScript(Coder& coder, GateState& state, const MetaLimits& limits)
-      : coder_(&coder), state_(&state), models_(&state.models), limits_(&limits) {}
+      : coder_(&coder),
+        state_(&state),
+        models_(&state.models),
+        limits_(&limits),
+        corners_(coder, state, limits) {}
 
   /// The next patch in ascending order of ids, its block without a position. nullopt: nonsense was decoded,
   /// and `error` says what.
@@ -42,7 +45,7 @@ class ShapeScript {
   [[nodiscard]] MetaError error() const { return error_; }
 
  private:
-  using Offset = glm::ivec3;
+  using Offset = GridOffset;
   struct Near {
     PatchShape shape;
     Block block;
@@ -53,56 +56,22 @@ class ShapeScript {
     std::uint32_t triangles = 1;
     std::uint32_t edge = 0;
   };
-  /// What is known when a corner's turn comes.
-  struct Expected {
-    std::uint32_t previous = kNone;   ///< the corner before, if any
-    std::uint32_t following = kNone;  ///< the corner behind, if this one closes the outline
-    Offset at{0};
-    std::array<Offset, 2> beside{};  ///< vertices whose coordinates may come again
-    std::uint32_t scale = 0;
-    bool attached = false;
-    std::array<Offset, GateModels::kWays> ways{};  ///< an attached corner could be foretold
-    /// How far each was off lately; null: the corner is not attached.
-    std::array<std::uint32_t, GateModels::kWays>* off = nullptr;
-  };
-  struct Offer {
-    std::uint32_t vertex = 0;
-    std::uint32_t distance = 0;
-    std::uint32_t kind = 0;  ///< 0: next on one border, 1: on both
-  };
-  struct Offers {
-    std::array<Offer, 16> list{};
-    std::uint32_t count = 0;
-  };
-
   static constexpr std::uint32_t kNone = VertexTable::kNone;
   static constexpr std::uint32_t kMostBack = 128;    ///< new patches looked back at for gates
   static constexpr std::uint32_t kMostOffered = 64;  ///< gates for one patch, about
-  static constexpr std::uint32_t kMostTested = 8;    ///< gates looked at of a vertex's, which may be many
 
   bool code_id(const WantedPatch* wanted, NewResident& patch);
   void look_around(std::span<const NewResident> before);
   bool code_class(const WantedPatch* wanted, PatchShape& shape);
   Attached code_gate(std::span<const NewResident> before, const PatchShape& shape, const WantedPatch* wanted);
   bool code_corners(const Attached& attached, const WantedPatch* wanted, PatchShape& shape);
-  Expected expect(const Attached& attached, const PatchShape& shape, std::uint32_t turn, std::uint32_t step);
+  ExpectedCorner expect(const Attached& attached, const PatchShape& shape, std::uint32_t turn,
+                        std::uint32_t step);
   void expect_attached(const Gate& gate, const PatchShape& shape, std::uint32_t turn, std::uint32_t step,
-                       Expected& expected);
-  void expect_alone(const PatchShape& shape, std::uint32_t step, Expected& expected);
-  std::uint32_t code_corner(const Expected& expected, std::span<const std::uint32_t> taken,
-                            const GridPosition* wanted);
-  void offer(Offers& offers, const Expected& expected, std::span<const std::uint32_t> taken,
-             std::uint32_t vertex) const;
-  Offers offers_for(const Expected& expected, std::span<const std::uint32_t> taken) const;
-  GridPosition code_position(const Expected& expected, const GridPosition* wanted);
-  std::int32_t code_residual(PositionModels& models, std::uint32_t scale, std::uint32_t& size_class,
-                             std::int32_t value);
-  static void learn(const Expected& expected, const GridPosition& position);
+                       ExpectedCorner& expected);
+  void expect_alone(const PatchShape& shape, std::uint32_t step, ExpectedCorner& expected);
 
   [[nodiscard]] Offset at(std::uint32_t vertex) const { return Offset(state_->vertices.position(vertex)); }
-  static std::uint32_t distance(const Offset& a, const Offset& b) {
-    return static_cast<std::uint32_t>(std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z));
-  }
   static Outline outline(const PatchShape& shape) { return {shape.corners, corner_count(shape.triangles)}; }
   bool fail(MetaError why) {
     error_ = why;
@@ -113,6 +82,7 @@ class ShapeScript {
   GateState* state_;
   GateModels* models_;
   const MetaLimits* limits_;
+  CornerScript<Coder> corners_;
   std::array<Near, GateModels::kNear> near_{};
   std::uint32_t gap_class_ = 2;
   std::uint32_t next_id_ = 0;        ///< the least that may come
@@ -283,10 +253,10 @@ bool ShapeScript<Coder>::code_corners(const Attached& attached, const WantedPatc
   }
   // `attached.gate` stays where it is: gates change only when the patch is whole.
   for (std::uint32_t step = count; step < corners; ++step) {
-    const Expected expected = expect(attached, shape, turn, step);
+    const ExpectedCorner expected = expect(attached, shape, turn, step);
     const std::uint32_t vertex =
-        code_corner(expected, std::span(taken).first(count), position_of(turn + step));
-    if (vertex == kNone) return false;
+        corners_.code(expected, std::span(taken).first(count), position_of(turn + step));
+    if (vertex == kNone) return fail(corners_.error());
     taken[count++] = shape.corners[(turn + step) % corners] = vertex;
   }
   return true;
@@ -294,11 +264,10 @@ bool ShapeScript<Coder>::code_corners(const Attached& attached, const WantedPatc
 
 /// Where corner `turn + step` would be if the surface went on as it did.
 template <class Coder>
-typename ShapeScript<Coder>::Expected ShapeScript<Coder>::expect(const Attached& attached,
-                                                                 const PatchShape& shape, std::uint32_t turn,
-                                                                 std::uint32_t step) {
+ExpectedCorner ShapeScript<Coder>::expect(const Attached& attached, const PatchShape& shape,
+                                          std::uint32_t turn, std::uint32_t step) {
   const std::uint32_t corners = corner_count(shape.triangles);
-  Expected expected;
+  ExpectedCorner expected;
   if (step > 0) expected.previous = shape.corners[(turn + step - 1) % corners];
   if (step == corners - 1) expected.following = shape.corners[turn];
   if (attached.gate != nullptr) {
@@ -313,7 +282,7 @@ typename ShapeScript<Coder>::Expected ShapeScript<Coder>::expect(const Attached&
 
 template <class Coder>
 void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& shape, std::uint32_t turn,
-                                         std::uint32_t step, Expected& expected) {
+                                         std::uint32_t step, ExpectedCorner& expected) {
   const std::uint32_t corners = corner_count(shape.triangles);
   const Offset from = at(gate.from);
   const Offset to = at(gate.to);
@@ -349,13 +318,13 @@ void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& sha
   expected.at = expected.ways[static_cast<std::size_t>(best - expected.off->begin())];
   expected.beside = {to, from};
   expected.scale =
-      std::min<std::uint32_t>(17, static_cast<std::uint32_t>(std::bit_width(distance(from, to))));
+      std::min<std::uint32_t>(17, static_cast<std::uint32_t>(std::bit_width(grid_distance(from, to))));
   expected.attached = true;
 }
 
 /// Where the nearest patch in number has its corner, moved as the corners before it moved.
 template <class Coder>
-void ShapeScript<Coder>::expect_alone(const PatchShape& shape, std::uint32_t step, Expected& expected) {
+void ShapeScript<Coder>::expect_alone(const PatchShape& shape, std::uint32_t step, ExpectedCorner& expected) {
   const std::uint32_t corners = corner_count(shape.triangles);
   const Near& next = near_[0];
   const Outline other = outline(next.shape);
@@ -375,137 +344,6 @@ void ShapeScript<Coder>::expect_alone(const PatchShape& shape, std::uint32_t ste
   } else {
     expected.at = before;
   }
-}
-
-template <class Coder>
-void ShapeScript<Coder>::offer(Offers& offers, const Expected& expected, std::span<const std::uint32_t> taken,
-                               std::uint32_t vertex) const {
-  if (std::ranges::find(taken, vertex) != taken.end()) return;
-  for (std::uint32_t i = 0; i < offers.count; ++i) {
-    if (offers.list[i].vertex != vertex) continue;
-    offers.list[i].kind = 1;
-    return;
-  }
-  offers.list[offers.count++] = {vertex, distance(at(vertex), expected.at), 0};
-}
-
-/// The border vertices next to those that are already corners, the likeliest first.
-template <class Coder>
-typename ShapeScript<Coder>::Offers ShapeScript<Coder>::offers_for(
-    const Expected& expected, std::span<const std::uint32_t> taken) const {
-  const GateTable& gates = state_->gates;
-  Offers offers;
-  std::uint32_t tested = 0;
-  if (expected.previous != kNone) {
-    for (std::uint32_t g = gates.first_leaving(expected.previous); g != kNone && tested < kMostTested;
-         g = gates.next_leaving(g), ++tested) {
-      offer(offers, expected, taken, gates.gate(g).to);
-    }
-  }
-  tested = 0;
-  if (expected.following != kNone) {
-    for (std::uint32_t g = gates.first_arriving(expected.following); g != kNone && tested < kMostTested;
-         g = gates.next_arriving(g), ++tested) {
-      offer(offers, expected, taken, gates.gate(g).from);
-    }
-  }
-  const auto end = offers.list.begin() + offers.count;
-  std::stable_sort(offers.list.begin(), end,
-                   [](const Offer& a, const Offer& b) { return a.distance < b.distance; });
-  offers.count = std::min(offers.count, 3U);
-  return offers;
-}
-
-/// kNone: not possible.
-template <class Coder>
-std::uint32_t ShapeScript<Coder>::code_corner(const Expected& expected, std::span<const std::uint32_t> taken,
-                                              const GridPosition* wanted) {
-  const std::uint32_t wanted_vertex = wanted == nullptr ? kNone : state_->vertices.find(*wanted);
-  const Offers offers = offers_for(expected, taken);
-  for (std::uint32_t i = 0; i < offers.count; ++i) {
-    const Offer& offered = offers.list[i];
-    const int relative =
-        static_cast<int>(std::bit_width(offered.distance)) - static_cast<int>(expected.scale) + 6;
-    const auto near = static_cast<std::uint32_t>(
-        std::clamp(relative, 0, static_cast<int>(GateModels::kDistanceClasses) - 1));
-    const std::uint32_t closes = expected.following != kNone ? 1 + offered.kind : 0;
-    AdaptiveBit& model = models_->corner[((i * GateModels::kDistanceClasses + near) * 3 + closes) * 2 +
-                                         static_cast<std::uint32_t>(expected.attached)];
-    if (coder_->code(model, wanted_vertex == offered.vertex)) return offered.vertex;
-  }
-  const GridPosition position = code_position(expected, wanted);
-  const std::uint32_t top = (1U << limits_->grid_bits) - 1;
-  if (position.x > top || position.y > top || position.z > top) {
-    fail(MetaError::kBadPosition);
-    return kNone;
-  }
-  if (expected.off != nullptr) learn(expected, position);
-  const std::uint32_t vertex = state_->vertices.find(position);
-  if (vertex != kNone) return vertex;
-  if (state_->vertices.size() >= limits_->max_vertices) {
-    fail(MetaError::kIdOutOfRange);
-    return kNone;
-  }
-  state_->mix(position.x);
-  state_->mix(position.y);
-  state_->mix(position.z);
-  return state_->vertices.add(position);
-}
-
-/// Axis by axis: equal to the expected coordinate or to that of a vertex beside, or a difference to the
-/// expected.
-template <class Coder>
-GridPosition ShapeScript<Coder>::code_position(const Expected& expected, const GridPosition* wanted) {
-  PositionModels& models = models_->position[expected.attached ? 1 : 0];
-  GridPosition position{0};
-  std::uint32_t hits = 0;
-  std::uint32_t size_class = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t want = wanted == nullptr ? 0 : static_cast<std::int32_t>((*wanted)[axis]);
-    const std::array<std::int32_t, 3> offered{expected.at[axis], expected.beside[0][axis],
-                                              expected.beside[1][axis]};
-    bool hit = false;
-    for (std::uint32_t i = 0; i < 3 && !hit; ++i) {
-      if (std::find(offered.begin(), offered.begin() + i, offered[i]) != offered.begin() + i) continue;
-      AdaptiveBit& model = models.equals[((i * PositionModels::kScales + expected.scale) * 3 + hits) * 3 +
-                                         static_cast<std::uint32_t>(axis)];
-      hit = coder_->code(model, want == offered[i]);
-      if (hit) position[axis] = static_cast<std::uint32_t>(offered[i]);
-    }
-    hits = hit ? std::min(2U, hits + 1) : 0;
-    if (hit) {
-      size_class = 0;
-      continue;
-    }
-    const std::int32_t residual = code_residual(models, expected.scale, size_class, want - offered[0]);
-    // What is negative becomes larger than any grid.
-    position[axis] = static_cast<std::uint32_t>(offered[0]) + static_cast<std::uint32_t>(residual);
-  }
-  return position;
-}
-
-/// Notes how far off each way to foretell the corner was.
-template <class Coder>
-void ShapeScript<Coder>::learn(const Expected& expected, const GridPosition& position) {
-  for (std::size_t way = 0; way < expected.ways.size(); ++way) {
-    const std::uint32_t missed = distance(Offset(position), expected.ways[way]);
-    std::uint32_t& off = (*expected.off)[way];
-    off += 64 * static_cast<std::uint32_t>(std::bit_width(missed)) - off / 64;
-  }
-}
-
-/// `size_class` goes from axis to axis: how large the difference was for the scale.
-template <class Coder>
-std::int32_t ShapeScript<Coder>::code_residual(PositionModels& models, std::uint32_t scale,
-                                               std::uint32_t& size_class, std::int32_t value) {
-  const auto size = static_cast<std::uint32_t>(std::abs(value));
-  const std::uint32_t length =
-      models.length[scale * 3 + size_class].code(*coder_, static_cast<std::uint32_t>(std::bit_width(size)));
-  size_class = length == 0 ? 0 : length + 2 < scale ? 1 : 2;
-  if (length == 0) return 0;
-  const auto magnitude = static_cast<std::int32_t>(
-      AdaptiveUnsigned::code_below_leading(*coder_, models.mantissa[length], length, size));
-  return coder_->code_raw(value < 0 ? 1 : 0, 1) != 0 ? -magnitude : magnitude;
 }
 
 }  // namespace atlaswire::codec

@@ -26,7 +26,7 @@ TEST(NetsimProgram, ExplainsItself) {
   }
   const auto [list_code, list] = netsim("--list");
   EXPECT_EQ(list_code, 0);
-  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 17);
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 18);
   const auto [show_code, show] = netsim("--show lte");
   EXPECT_EQ(show_code, 0);
   EXPECT_NE(show.find("name = \"lte\""), std::string::npos);

@@ -34,6 +34,7 @@ class AtlasStreamTest : public ::testing::Test {
   AtlasStreamTest() {
     settings.render.atlas = settings.render.allocator.atlas = {256, 256};
     settings.video.threads = 1;
+    settings.video.intra_interval = 5;
     request.camera.extent = {160, 90};
     request.camera.pose = scene->start;
   }
