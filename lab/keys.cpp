@@ -36,6 +36,8 @@ constexpr std::array kKeys{
     Key{"atlas", &S::atlas, 64, 8192, "", "WxH in texels, multiples of 64 (sas)"},
     Key{"views", &S::views, 1, 16, "", "visible sets united a frame, at most (sas)"},
     Key{"prediction_step_ms", &S::prediction_step_ms, 1, 1000, "", "time between them, ms (sas)"},
+    Key{"hold_frames", &S::hold_frames, 0, 1000, "",
+        "frames that a patch stays after it was last seen (sas)"},
     Key{"fov_scale", &S::fov_scale, 1, 2, "", "enlargement of the server's view"},
     Key{"id_scale", &S::id_scale, 0.25, 2, "", "id pixels per display pixel along a side (sas)"},
     Key{"max_oversampling", &S::max_oversampling, 1, 8, "",

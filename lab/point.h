@@ -26,15 +26,16 @@ struct PointSettings {
   Extent2D atlas{2048, 2048};               ///< texels (sas)
   std::uint32_t views = 5;                  ///< visible sets united a frame, at most (sas)
   double prediction_step_ms = 1000.0 / 30;  ///< between them (sas)
+  std::uint32_t hold_frames = 4;            ///< that a patch stays visible after it was last seen (sas)
   double fov_scale = 1.2;                   ///< enlargement of the server's view, >= 1
   double id_scale = 1;                      ///< id pixels per display pixel along a side (sas)
   double max_oversampling = 4;              ///< texels a pixel may get while the atlas has room, 1..8 (sas)
-  double foveation = 0;                     ///< octaves of atlas area lost per radian from the view axis (sas)
-  std::string strategy = "S0";              ///< of the atlas's memory: render::strategies() (sas)
-  std::uint32_t reshade_interval = 1;       ///< frames (sas)
-  std::uint32_t grid_bits = 0;              ///< of the replica's grid; 0: suited to the scene (sas)
-  std::string meta_codec = "mirror";        ///< how geometry travels: "mirror", "gate" or "plain" (sas)
-  std::uint32_t new_patches = 0;            ///< a frame may show for the first time; 0: all (sas)
+  double foveation = 0;                ///< octaves of atlas area lost per radian from the view axis (sas)
+  std::string strategy = "S0";         ///< of the atlas's memory: render::strategies() (sas)
+  std::uint32_t reshade_interval = 1;  ///< frames (sas)
+  std::uint32_t grid_bits = 0;         ///< of the replica's grid; 0: suited to the scene (sas)
+  std::string meta_codec = "mirror";   ///< how geometry travels: "mirror", "gate" or "plain" (sas)
+  std::uint32_t new_patches = 0;       ///< a frame may show for the first time; 0: all (sas)
   // Time and network.
   double server_hz = 30;   ///< frames a second
   double client_hz = 120;  ///< displayed frames a second

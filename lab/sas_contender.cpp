@@ -21,6 +21,7 @@ server::StreamSettings stream_settings(const PointSettings& point) {
   s.method = point.method;
   s.render.atlas = point.atlas;
   s.render.allocator.superblock_log2 = render::suited_superblock_log2(point.atlas);
+  s.render.hold_frames = point.hold_frames;
   s.render.fov_scale = point.fov_scale;
   s.render.id_scale = point.id_scale;
   s.render.max_oversampling = point.max_oversampling;

@@ -112,6 +112,7 @@ struct MethodSettings {
   double fov_scale = 1.2;      ///< >= 1; room for rotation against larger visible sets
   double id_scale = 1.0;  ///< id buffer pixels per display pixel along a side; small triangles against time
   std::uint32_t max_views = 2;  ///< visible sets united per frame
+  std::uint32_t hold_frames = 4;  ///< that a patch stays after it was last seen: steady sets against texels
   Duration prediction_step = std::chrono::microseconds(33'333);
   double max_oversampling = 4.0;          ///< texels a pixel may get when the atlas has room
   std::uint32_t most_new_patches = 4096;  ///< a frame may show for the first time, the largest first; 0: all

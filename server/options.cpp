@@ -79,6 +79,10 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
                     "Id buffer pixels per display pixel, 0.25..2: small triangles against visibility time");
   group->add_option("--views", render.max_views,
                     "Predicted views united, 1..16: fewer holes when moving against visibility time");
+  group->add_option(
+      "--hold-frames", render.hold_frames,
+      "Frames that a patch stays after it was last seen, 0..1000: fewer holes and geometry bytes "
+      "against atlas memory");
   group->add_option("--cover", raw.cover,
                     "Latency to cover in ms, or auto (measured): fewer holes against a larger visible set");
   group->add_option("--prediction-step", raw.prediction_step_ms,
@@ -219,6 +223,7 @@ void apply_picture(const Raw& raw, StreamSettings& s) {
   demand_range("--fov-scale", render.fov_scale, 1.0, 2.0);
   demand_range("--id-scale", render.id_scale, 0.25, 2.0);
   demand_range("--views", render.max_views, 1U, 16U);
+  demand_range("--hold-frames", render.hold_frames, 0U, 1000U);
   demand_range("--prediction-step", raw.prediction_step_ms, 1.0, 1000.0, " ms");
   render.prediction_step = from_seconds(raw.prediction_step_ms / 1000);
   demand_range("--max-oversampling", render.max_oversampling, 1.0, 8.0);

@@ -65,6 +65,12 @@ struct LevelConstants {
   vec4 gaze;  // xyz: unit
 };
 
+/// Push constants of the hold pass.
+struct HoldConstants {
+  uint patches;
+  uint frames;  // that a patch counts as visible after it was last seen
+};
+
 /// A patch's corners in the position buffer, how many triangles they make, and where its priority is.
 struct PatchCorners {
   uint position[5];
@@ -96,6 +102,7 @@ static_assert(sizeof(ViewConstants) == 96 && offsetof(ViewConstants, camera_low)
 static_assert(sizeof(CullConstants) == 112 && offsetof(CullConstants, extent) == 96);
 static_assert(sizeof(GridConstants) == 16 && offsetof(GridConstants, coarse) == 8);
 static_assert(sizeof(LevelConstants) == 64 && offsetof(LevelConstants, pixels_per_radian) == 32);
+static_assert(sizeof(HoldConstants) == 8 && offsetof(HoldConstants, frames) == 4);
 static_assert(sizeof(PatchCorners) == 32 && offsetof(PatchCorners, surface) == 24);
 static_assert(sizeof(ChunkCandidate) == 48 && offsetof(ChunkCandidate, index_count) == 32);
 static_assert(sizeof(DrawCommand) == 20 && offsetof(DrawCommand, first_instance) == 16);

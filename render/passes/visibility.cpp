@@ -76,6 +76,7 @@ VisibilityPass::VisibilityPass(Device& device, const SceneGpu& scene, const Visi
   sets_.write(0, 5, geometry_.levels);
   sets_.write(0, 6, geometry_.list);
   sets_.write(0, 7, geometry_.priorities);
+  sets_.write(0, 8, geometry_.held);
   set_emphasis({});
 }
 
@@ -132,6 +133,7 @@ void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camer
     record_view(commands, view, i);
     record_marks(commands);
   }
+  if (settings_.hold_frames != 0) record_hold(commands);
   record_levels(commands, camera);
 }
 
@@ -210,6 +212,14 @@ void VisibilityPass::clear_results(const vk::raii::CommandBuffer& commands) {
   commands.updateBuffer<std::uint32_t>(geometry_.list.handle(), 0, header);
   commands.fillBuffer(geometry_.levels.handle(), 0, VK_WHOLE_SIZE, 0);
   transfer_to_shaders(commands);
+}
+
+void VisibilityPass::record_hold(const vk::raii::CommandBuffer& commands) {
+  const auto patches = static_cast<std::uint32_t>(scene_->scene().patches.size());
+  compute_to_compute(commands);
+  pipelines_.hold().bind(commands, {sets_.handle()});
+  pipelines_.hold().push(commands, visibility::HoldConstants{patches, settings_.hold_frames});
+  commands.dispatch(group_count(patches, visibility::kListGroup), 1, 1);
 }
 
 void VisibilityPass::record_levels(const vk::raii::CommandBuffer& commands, const Camera& camera) {

@@ -25,7 +25,9 @@ struct VisibilitySettings {
   double fov_scale = 1.2;       ///< >= 1; room for rotation against larger visible sets
   double id_scale = 1.0;        ///< > 0; id pixels per display pixel along a side
   std::uint32_t max_views = 2;  ///< >= 1; poses a frame
-  bool occlusion = true;        ///< drop hidden chunks before their vertices are transformed; same picture
+  /// Frames that a patch stays in the set after it was last seen; steadier sets against larger ones.
+  std::uint32_t hold_frames = 0;
+  bool occlusion = true;  ///< drop hidden chunks before their vertices are transformed; same picture
 };
 
 /// What one frame's recording amounts to.
@@ -36,8 +38,8 @@ struct VisibilityStats {
 };
 
 /// The potentially visible set ([SAS] 3.1): id buffers of several poses, each with an enlarged field of view
-/// and reversed-Z depth; patches marked in compute; and for each marked patch the size that it wants in the
-/// atlas, seen from the current pose.
+/// and reversed-Z depth; patches marked in compute, and with them those seen a few frames ago; and for each
+/// marked patch the size that it wants in the atlas, seen from the current pose.
 ///
 /// Chunks that showed something in the last frame are drawn first; of the others only those which could show
 /// behind what is then there. That drops no visible pixel; but where two surfaces have equal depth, the one
@@ -74,6 +76,7 @@ class VisibilityPass {
             const DrawList& list, const Buffer& indirect, std::uint32_t first_command, bool clear);
   void clear_results(const vk::raii::CommandBuffer& commands);
   void record_marks(const vk::raii::CommandBuffer& commands);
+  void record_hold(const vk::raii::CommandBuffer& commands);
   void record_levels(const vk::raii::CommandBuffer& commands, const Camera& camera);
 
   Device* device_;

@@ -63,6 +63,8 @@ VisibilityGeometry::VisibilityGeometry(Device& device, const Scene& scene, const
                             Usage::eStorageBuffer)),
       marks(device_buffer(device, "patch marks", scene.patches.size() * sizeof(std::uint32_t),
                           Usage::eStorageBuffer)),
+      held(device_buffer(device, "held patches", scene.patches.size() * sizeof(std::uint32_t),
+                         Usage::eStorageBuffer)),
       list(device_buffer(device, "visible patches",
                          (visibility::kListHeader + scene.patches.size()) * sizeof(std::uint32_t),
                          Usage::eStorageBuffer | Usage::eIndirectBuffer)),
@@ -83,6 +85,7 @@ VisibilityGeometry::VisibilityGeometry(Device& device, const Scene& scene, const
   upload(context, corners, patch_corners(scene));
   context.run([&](const vk::raii::CommandBuffer& commands) {
     commands.fillBuffer(marks.handle(), 0, VK_WHOLE_SIZE, 0);
+    commands.fillBuffer(held.handle(), 0, VK_WHOLE_SIZE, 0);
     transfer_to_shaders(commands);
   });
   std::ranges::fill(priorities.mapped<float>(), 0.0F);

@@ -19,6 +19,7 @@ struct VisibilityGeometry {
   Buffer positions;   ///< Scene::positions, 3 floats each
   Buffer corners;     ///< visibility::PatchCorners by patch
   Buffer marks;       ///< a word a patch: not 0 if seen in this frame; 0 between frames
+  Buffer held;        ///< a word a patch: frames for which it still counts as visible
   Buffer list;        ///< visibility::kListHeader words, then the marked patches in no order
   Buffer priorities;  ///< surface_priorities, written by the host; 0 at first
   Buffer levels;      ///< a word a patch, for the host

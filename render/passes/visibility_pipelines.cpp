@@ -61,7 +61,8 @@ std::vector<Binding> visibility_bindings() {
           {.binding = 4, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
           {.binding = 5, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
           {.binding = 6, .type = Type::eStorageBuffer, .stages = Stage::eFragment | Stage::eCompute},
-          {.binding = 7, .type = Type::eStorageBuffer, .stages = Stage::eCompute}};
+          {.binding = 7, .type = Type::eStorageBuffer, .stages = Stage::eCompute},
+          {.binding = 8, .type = Type::eStorageBuffer, .stages = Stage::eCompute}};
 }
 
 VisibilityPipelines::VisibilityPipelines(const Device& device, const SceneGpu& scene,
@@ -69,6 +70,10 @@ VisibilityPipelines::VisibilityPipelines(const Device& device, const SceneGpu& s
     : mark_(device, ComputeSettings{.name = "mark visible",
                                     .shader = shaders::visibility_mark_comp,
                                     .layouts = {layout.handle()}}),
+      hold_(device, ComputeSettings{.name = "hold visible",
+                                    .shader = shaders::visibility_hold_comp,
+                                    .layouts = {layout.handle()},
+                                    .push_constant_bytes = sizeof(visibility::HoldConstants)}),
       level_(device, ComputeSettings{.name = "levels",
                                      .shader = shaders::visibility_level_comp,
                                      .layouts = {layout.handle()},

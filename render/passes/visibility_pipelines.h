@@ -23,11 +23,13 @@ class VisibilityPipelines {
   /// The pipeline that draws a class that the scene has.
   [[nodiscard]] const Pipeline& draw(IdClass id_class, bool double_sided) const;
   [[nodiscard]] const Pipeline& mark() const { return mark_; }
+  [[nodiscard]] const Pipeline& hold() const { return hold_; }
   [[nodiscard]] const Pipeline& level() const { return level_; }
 
  private:
   std::array<std::optional<Pipeline>, 6> draws_;  ///< by class, then single- and double-sided
   Pipeline mark_;
+  Pipeline hold_;
   Pipeline level_;
 };
 

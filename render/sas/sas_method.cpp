@@ -25,7 +25,10 @@ MethodSettings checked(MethodSettings settings, std::size_t patches) {
 
 VisibilitySettings visibility_settings(const MethodSettings& s) {
   constexpr std::uint32_t kEyes = 2;
-  return {.fov_scale = s.fov_scale, .id_scale = s.id_scale, .max_views = kEyes * s.max_views};
+  return {.fov_scale = s.fov_scale,
+          .id_scale = s.id_scale,
+          .max_views = kEyes * s.max_views,
+          .hold_frames = s.hold_frames};
 }
 
 /// Where the visible sets that the frame unites are seen from.
@@ -78,8 +81,7 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
       visibility_(device, scene_gpu_, visibility_settings(settings_)),
       planner_(make_layout_planner(device, visibility_, level_settings(settings_),
                                    static_cast<std::uint32_t>(scene_->patches.size()),
-                                   settings_.allocator_kind, settings_.strategy,
-                                   settings_.most_new_patches)),
+                                   settings_.allocator_kind, settings_.strategy, settings_.most_new_patches)),
       freed_(settings_.atlas, settings_.allocator.min_block_log2,
              static_cast<std::uint32_t>(scene_->patches.size())),
       shading_(device, scene_gpu_, settings_.atlas, settings_.frames_in_flight),

@@ -220,7 +220,9 @@ TEST_F(Sas, ReshadesEachBlockWithinTheInterval) {
 }
 
 TEST_F(Sas, IntraFramesClearWhatNoPatchHolds) {
-  SasMethod method(device(), corridor(false), small());
+  MethodSettings settings = small();
+  settings.hold_frames = 0;
+  SasMethod method(device(), corridor(false), settings);
   (void)method.render(request(0, true));
   FrameRequest away = request(1, true);
   away.camera.pose.orientation = {0, 0, 1, 0};  // out of the corridor's open end

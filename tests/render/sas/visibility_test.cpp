@@ -404,5 +404,28 @@ TEST_F(Visibility, LevelsLeaveRoomForTheHalfTexelAtABlocksEdges) {
   EXPECT_NEAR(level_log2_area(seen.words[1]), 2 + 2 * std::log2(pixels) + std::log2(4 * 0.004), 0.2);
 }
 
+TEST_F(Visibility, HoldsWhatItSawForSomeFrames) {
+  TinyScene scene;
+  scene.material(kOpaque);
+  const PatchId wall = scene.wall(-1, -1, 1, 1, -2);
+  Viewer viewer(scene.finish(), {.fov_scale = 1.2, .hold_frames = 2});
+  Camera away = small_camera();
+  away.pose.orientation = {0, 0, 1, 0};
+  EXPECT_THAT(viewer.see(away).patches, IsEmpty());
+  for (int times = 0; times < 2; ++times) {
+    EXPECT_THAT(viewer.see(small_camera()).patches, ElementsAre(value(wall)));
+    EXPECT_THAT(viewer.see(away).patches, ElementsAre(value(wall)));
+    EXPECT_THAT(viewer.see(away).patches, ElementsAre(value(wall)));
+    EXPECT_THAT(viewer.see(away).patches, IsEmpty());
+  }
+  // Seen again while it is held, it is held anew.
+  viewer.see(small_camera());
+  viewer.see(away);
+  viewer.see(small_camera());
+  viewer.see(away);
+  EXPECT_THAT(viewer.see(away).patches, ElementsAre(value(wall)));
+  EXPECT_THAT(viewer.see(away).patches, IsEmpty());
+}
+
 }  // namespace
 }  // namespace atlaswire::render
