@@ -14,7 +14,7 @@ class Carrier {
   virtual ~Carrier() = default;
   /// Everything happens that is due up to and at `now`, which never decreases; times since the path's start.
   virtual void advance(Duration now) = 0;
-  /// When the first frame was started; the client shows frames from 0 on.
+  /// From when on frames travelled, for bytes a second; the client shows frames from 0 on.
   [[nodiscard]] virtual Duration first_frame() const = 0;
   /// When the pose was taken that `frame`, which was delivered, was made for.
   [[nodiscard]] virtual Duration posed(FrameId frame) const = 0;

@@ -1,6 +1,5 @@
 #include "lab/direct_carrier.h"
 
-#include <cmath>
 #include <utility>
 
 namespace atlaswire::lab {
@@ -11,24 +10,22 @@ DirectCarrier::DirectCarrier(const PointSettings& settings, FrameSource& source,
       latency_(from_seconds(settings.latency_ms * 1e-3)),
       source_(&source),
       contender_(&contender),
-      motion_(&motion),
-      first_(-static_cast<std::int64_t>(std::ceil(to_seconds(latency_) * rate_ - 1e-9))),
-      next_(first_) {}
+      motion_(&motion) {}
 
-Duration DirectCarrier::start_of(std::int64_t frame) const {
+Duration DirectCarrier::arrival_of(std::int64_t frame) const {
   return from_seconds(static_cast<double>(frame) / rate_);
 }
 
 void DirectCarrier::advance(Duration now) {
   // Half a microsecond: frames that fall on a display frame are on it, whatever rounding did.
   constexpr Duration kRounding{500};
-  while (start_of(next_) + latency_ <= now + kRounding) carry(next_++);
+  while (arrival_of(next_) <= now + kRounding) carry(next_++);
 }
 
 void DirectCarrier::carry(std::int64_t frame) {
-  const Duration start = start_of(frame);
+  const Duration start = arrival_of(frame) - latency_;
   const FrameTiming timing{
-      .posed = start, .shown_from = start + latency_, .shown_until = start_of(frame + 1) + latency_};
+      .posed = start, .shown_from = arrival_of(frame), .shown_until = arrival_of(frame + 1)};
   server::EncodedFrame made = source_->make({}, motion_->at(start), timing, contender_->take_refresh());
   posed_.emplace(made.frame, start);
   client::UpdateArrival update;

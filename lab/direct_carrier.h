@@ -12,7 +12,9 @@
 namespace atlaswire::lab {
 
 /// The static latency of [SAS] 5.6: every frame arrives whole, `latency_ms` after its pose was taken,
-/// whatever its size.
+/// whatever its size. Frames arrive on the
+/// server's beat from time zero on, so that at equal rates of server and client what is seen is exactly that
+/// old.
 class DirectCarrier final : public Carrier {
  public:
   /// All are borrowed.
@@ -20,12 +22,12 @@ class DirectCarrier final : public Carrier {
                 const HeadMotion& motion);
 
   void advance(Duration now) override;
-  [[nodiscard]] Duration first_frame() const override { return start_of(first_); }
+  [[nodiscard]] Duration first_frame() const override { return {}; }
   [[nodiscard]] Duration posed(FrameId frame) const override { return posed_.at(frame); }
   void add_figures(std::vector<Figure>& figures) const override;
 
  private:
-  [[nodiscard]] Duration start_of(std::int64_t frame) const;
+  [[nodiscard]] Duration arrival_of(std::int64_t frame) const;
   void carry(std::int64_t frame);
 
   double rate_;  ///< Hz
@@ -33,8 +35,7 @@ class DirectCarrier final : public Carrier {
   FrameSource* source_;
   Contender* contender_;
   const HeadMotion* motion_;
-  std::int64_t first_;  ///< so early that it has arrived at 0; frame 0 starts at 0
-  std::int64_t next_;
+  std::int64_t next_ = 0;  ///< arrives at 0
   std::unordered_map<FrameId, Duration> posed_;
 };
 

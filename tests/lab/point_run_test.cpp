@@ -129,6 +129,17 @@ TEST(PointRun, ALensLeavesTheTruthsCornersBlack) {
   EXPECT_EQ(kept.deferred_fragments, bent.deferred_fragments);
 }
 
+TEST(PointRun, LatencyIsHowOldAPictureIsWhateverTheRates) {
+  for (const double latency_ms : {0.0, 20.0, 130.0}) {
+    PointSettings s = small("atw");
+    s.server_hz = s.client_hz;
+    s.latency_ms = latency_ms;
+    const PointResult result = run_point(s, {});
+    EXPECT_NEAR(figure(result, "pose_age_ms"), latency_ms, 1e-6);
+    EXPECT_EQ(figure(result, "server_frames"), s.seconds * s.client_hz);
+  }
+}
+
 TEST(PointRun, KnowingTheFutureClosesHoles) {
   PointSettings s = small("sas");
   s.latency_ms = 400;
