@@ -111,7 +111,7 @@ struct MethodSettings {
   Extent2D atlas{1024, 1024};  ///< colour texels; quality against bytes and shading time
   double fov_scale = 1.2;      ///< >= 1; room for rotation against larger visible sets
   double id_scale = 1.0;  ///< id buffer pixels per display pixel along a side; small triangles against time
-  std::uint32_t max_views = 2;  ///< visible sets united per frame
+  std::uint32_t max_views = 2;    ///< visible sets united per frame
   std::uint32_t hold_frames = 4;  ///< that a patch stays after it was last seen: steady sets against texels
   Duration prediction_step = std::chrono::microseconds(33'333);
   double max_oversampling = 4.0;          ///< texels a pixel may get when the atlas has room
