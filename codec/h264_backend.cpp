@@ -21,8 +21,8 @@ std::int64_t bits_per_second(const VideoEncoderSettings& settings) {
   return std::max(kMinBitRate, static_cast<std::int64_t>(std::min(settings.bit_rate.bits_per_second, limit)));
 }
 
-/// A little above the mean: x264 held to the mean itself forgets at once what a quiet picture left over, and a
-/// short buffer then leaves a tenth of the rate unused.
+/// A little above the mean: x264 held to the mean itself forgets at once what a quiet picture left over, and
+/// a short buffer then leaves a tenth of the rate unused.
 constexpr double kPeak = 1.2;
 
 void set_rate(AVCodecContext& context, const VideoEncoderSettings& settings) {

@@ -8,15 +8,15 @@
 //                before the bias; the paper has U V, although a side of w texels makes w - 1 steps),
 //                times 2^(priority - foveation)
 //   bits 16..31  log2(aspect) * 256, two's complement, rounded: `aspect` is width over height of the block
-//                in the patch's layout (base/patch_layout.h, u over v), (U + 1) / (V + 1); negative: taller than wide, so a landscape block
-//                holds it transposed
+//                in the patch's layout (base/patch_layout.h, u over v), (U + 1) / (V + 1); negative: taller
+//                than wide, so a landscape block holds it transposed
 #ifndef ATLASWIRE_SHADERS_LEVEL_LAYOUT_H
 #define ATLASWIRE_SHADERS_LEVEL_LAYOUT_H
 
 #ifdef __cplusplus
 #include <cstdint>
 namespace atlaswire::render {
-inline constexpr double kLevelSteps = 256.0;          ///< per doubling, of area and of aspect
+inline constexpr double kLevelSteps = 256.0;           ///< per doubling, of area and of aspect
 inline constexpr std::int32_t kLevelAreaBias = 16384;  ///< the stored value of an area of one pixel
 
 /// log2 of the block's area in display pixels squared; only for a word that is not 0.

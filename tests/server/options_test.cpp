@@ -113,7 +113,8 @@ TEST(Options, RefusalsNameOptionValueAndCure) {
   EXPECT_THAT(refusal({"--method", "video"}), HasSubstr("--method video: must be sas"));
   EXPECT_THAT(refusal({"--port", "70000"}), HasSubstr("--port 70000: must be 0..65535"));
   EXPECT_THAT(refusal({"--grid-bits", "21"}), HasSubstr("--grid-bits 21: must be 8..20"));
-  EXPECT_THAT(refusal({"--meta-codec", "zip"}), HasSubstr("--meta-codec zip: must be mirror, gate, plain or paper"));
+  EXPECT_THAT(refusal({"--meta-codec", "zip"}),
+              HasSubstr("--meta-codec zip: must be mirror, gate, plain or paper"));
   EXPECT_THAT(refusal({"--mirror", "localhost"}), HasSubstr("--mirror localhost: must be HOST:PORT"));
   EXPECT_THAT(refusal({"--mirror", "localhost:0"}), HasSubstr("--mirror"));
   EXPECT_THAT(refusal({"--encoder", "magic"}), HasSubstr("--encoder magic: must be one of auto"));
