@@ -27,13 +27,13 @@ def main():
     for axis, scene in zip(axes[0], scenes):
         mine = [row for row in rows if row["scene"] == scene]
         bottom = [0.0] * len(mine)
-        names = [f"{r['strategy']}\n({r['out_of_memory_frames']}, {r['resets']})" for r in mine]
+        names = [f"{r['strategy']}\n{r['out_of_memory_frames']}\n{r['resets']}" for r in mine]
         for name, colour in CLASSES:
             shares = [float(row[name]) for row in mine]
             axis.bar(names, shares, bottom=bottom, color=colour, label=name)
             bottom = [below + share for below, share in zip(bottom, shares)]
         axis.set_title(scene)
-        axis.set_xlabel("(frames out of memory, resets)")
+        axis.set_xlabel("name, frames out of memory, resets")
     axes[0][0].set_ylabel("% of the atlas, mean over frames")
     axes[0][-1].legend(bbox_to_anchor=(1.02, 1), loc="upper left", fontsize="small")
     figure.tight_layout()
