@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Keeps patches visible for some frames after they were last seen: what is smaller than a pixel is seen in one
-// frame and missed in the next, and what turns away may come back at once.
+// Keeps patches listed for some frames after they were last seen: what is smaller than a pixel is seen in one
+// frame and missed in the next. The level pass drops those that are not small.
 #include "shaders/visibility_list.glsl"
 
 layout(local_size_x = kListGroup) in;
@@ -18,5 +18,6 @@ void main() {
   } else if (held[patch_id] != 0u) {
     --held[patch_id];
     mark(patch_id);
+    marks[patch_id] = kHeld;
   }
 }

@@ -23,6 +23,9 @@ using uint = std::uint32_t;
 AW_CONST kNoPatch = 0xffffffffu;
 /// Invocations of a work group of the passes over patches and chunks.
 AW_CONST kListGroup = 64u;
+/// What a mark says: seen in this frame, or held from an earlier one. 0: neither.
+AW_CONST kSeen = 1u;
+AW_CONST kHeld = 2u;
 /// Pixels that one invocation of the mark pass reads, side by side; at most 32.
 AW_CONST kMarkRun = 8u;
 /// Words before the list of visible patches: the level pass's groups (x, y, z), and the list's length.

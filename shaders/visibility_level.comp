@@ -8,8 +8,11 @@
 
 layout(local_size_x = kListGroup) in;
 
+// Square pixels of the largest patch that is held.
+const float kMostHeldArea = 32.0;
+
 layout(push_constant) uniform Level { LevelConstants level; };
-layout(set = 0, binding = 1, std430) writeonly buffer Marks { uint marks[]; };
+layout(set = 0, binding = 1, std430) buffer Marks { uint marks[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Corners { PatchCorners corners[]; };
 layout(set = 0, binding = 5, std430) writeonly buffer Levels { uint levels[]; };
@@ -49,6 +52,7 @@ float triangle_area(float x, float y, float z) {
 void main() {
   if (gl_GlobalInvocationID.x >= list[kListHeader - 1u]) return;
   uint patch_id = list[kListHeader + gl_GlobalInvocationID.x];
+  bool held = marks[patch_id] == kHeld;
   marks[patch_id] = 0u;
 
   uint triangles = corners[patch_id].triangles;
@@ -83,6 +87,7 @@ void main() {
       height = max(e12, e04);
     }
   }
+  if (held && area > kMostHeldArea) return;  // an id pass does not miss it
   // Corners lie on the outer texels' centres ([SAS] fig. 6), so w texels make w - 1 steps: one more a side, but no
   // more than four times the area, for long slivers show few pixels.
   float side_u = sqrt(area * max(width, 1e-15) / max(height, 1e-15));

@@ -9,7 +9,7 @@ layout(set = 0, binding = 6, std430) buffer List { uint list[]; };
 
 void mark(uint patch_id) {
   // The plain read spares most atomics; a stale 0 only costs one.
-  if (marks[patch_id] != 0u || atomicExchange(marks[patch_id], 1u) != 0u) return;
+  if (marks[patch_id] != 0u || atomicExchange(marks[patch_id], kSeen) != 0u) return;
   uint at = atomicAdd(list[kListHeader - 1u], 1u);
   list[kListHeader + at] = patch_id;
   if (at % kListGroup == 0u) atomicAdd(list[0], 1u);

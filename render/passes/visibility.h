@@ -25,7 +25,8 @@ struct VisibilitySettings {
   double fov_scale = 1.2;       ///< >= 1; room for rotation against larger visible sets
   double id_scale = 1.0;        ///< > 0; id pixels per display pixel along a side
   std::uint32_t max_views = 2;  ///< >= 1; poses a frame
-  /// Frames that a patch stays in the set after it was last seen; steadier sets against larger ones.
+  /// Frames that a patch of at most 32 square pixels stays in the set after it was last seen; steadier sets
+  /// against larger ones.
   std::uint32_t hold_frames = 0;
   bool occlusion = true;  ///< drop hidden chunks before their vertices are transformed; same picture
 };

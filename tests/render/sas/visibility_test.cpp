@@ -407,7 +407,7 @@ TEST_F(Visibility, LevelsLeaveRoomForTheHalfTexelAtABlocksEdges) {
 TEST_F(Visibility, HoldsWhatItSawForSomeFrames) {
   TinyScene scene;
   scene.material(kOpaque);
-  const PatchId wall = scene.wall(-1, -1, 1, 1, -2);
+  const PatchId wall = scene.wall(-0.04F, -0.04F, 0.04F, 0.04F, -2);  // two pixels wide
   Viewer viewer(scene.finish(), {.fov_scale = 1.2, .hold_frames = 2});
   Camera away = small_camera();
   away.pose.orientation = {0, 0, 1, 0};
