@@ -19,9 +19,10 @@ using S = PointSettings;
 constexpr double kMostSeed = 9.007199254740992e15;  // exact in JSON and TOML readers everywhere
 
 constexpr std::array kKeys{
-    Key{"scene", &S::scene, 0, 0, "", "built-in scene (atrium, atrium:0.2) or a .glb or .gltf file"},
+    Key{"scene", &S::scene, 0, 0, "", "built-in scene (atrium, atrium:0.2, parade) or a .glb or .gltf file"},
     Key{"path", &S::path, 0, 0, "",
-        "built-in camera path (atrium, atrium-about, atrium-still, atrium-turn) or a .csv file"},
+        "built-in camera path (atrium, atrium-about, atrium-still, atrium-turn, parade, parade-still) or a "
+        ".csv file"},
     Key{"seconds", &S::seconds, 0.01, 3600, "", "length of the path that is played, s"},
     Key{"display", &S::display, 16, 8192, "", "WxH in pixels of one eye's view"},
     Key{"horizontal_fov", &S::horizontal_fov, 1, 170, "", "horizontal field of view, degrees"},

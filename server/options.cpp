@@ -57,7 +57,7 @@ struct Raw {
 void add_scene_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
   auto* group = app.add_option_group("Scene and device");
   group->add_option("--scene", s.scene,
-                    "Built-in scene (atrium, atrium:DETAIL) or a glTF file (.gltf, .glb)");
+                    "Built-in scene (atrium, atrium:DETAIL, parade) or a glTF file (.gltf, .glb)");
   group->add_option(
       "--device", s.device,
       "auto, an index of --list-devices, or part of a Vulkan device's name; llvmpipe is the CPU");

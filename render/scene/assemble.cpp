@@ -1,24 +1,31 @@
 #include "render/scene/assemble.h"
 
 #include "render/scene/chunk_order.h"
+#include "render/scene/find_movers.h"
 #include "render/scene/flatten.h"
 #include "render/scene/light_lists.h"
+#include "render/scene/moved_scene.h"
 #include "render/scene/scene_error.h"
+#include "render/scene/scene_motion.h"
 #include "render/scene/subdivide.h"
 
 #include <algorithm>
 #include <glm/common.hpp>
 #include <limits>
+#include <span>
+#include <utility>
 
 namespace atlaswire::render {
 
 namespace {
 
-/// Vertices in order of first use by patches, so that neighbours in memory are neighbours in space.
-void renumber_vertices(const FlatMesh& flat, const std::vector<TriangleGroup>& groups,
-                       const std::vector<OrderedGroup>& sorted, Scene& scene) {
+/// Vertices in order of first use by patches, so that neighbours in memory are neighbours in space. Gives
+/// their origins, if anything moves.
+std::vector<VertexOrigin> renumber_vertices(const FlatMesh& flat, const std::vector<TriangleGroup>& groups,
+                                            const std::vector<OrderedGroup>& sorted, Scene& scene) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> numbers(flat.vertices.size(), kUnused);
+  std::vector<VertexOrigin> origins;
   scene.vertices.reserve(flat.vertices.size());
   scene.patches.reserve(sorted.size());
   for (const OrderedGroup& s : sorted) {
@@ -32,15 +39,17 @@ void renumber_vertices(const FlatMesh& flat, const std::vector<TriangleGroup>& g
       if (number == kUnused) {
         number = static_cast<std::uint32_t>(scene.vertices.size());
         scene.vertices.push_back(flat.vertices[group.corners[c]]);
+        if (!flat.origins.empty()) origins.push_back(flat.origins[group.corners[c]]);
       }
       patch.vertices[c] = number;
     }
     scene.patches.push_back(patch);
   }
-  const std::vector<VertexId> welded = weld(scene.vertices, scene.positions);
+  const std::vector<VertexId> welded = weld(scene.vertices, origins, scene.positions);
   for (Patch& patch : scene.patches) {
     for (std::size_t c = 0; c < kMaxPatchCorners; ++c) patch.positions[c] = welded[patch.vertices[c]];
   }
+  return origins;
 }
 
 void list_triangles(Scene& scene) {
@@ -86,7 +95,9 @@ std::uint32_t split_huge_triangles(SceneSource& source) {
   const float longest = suited_longest_edge(source);
   std::size_t before = 0;
   std::size_t after = 0;
-  for (SourceMesh& mesh : source.meshes) {
+  for (std::size_t m = 0; m < source.meshes.size(); ++m) {
+    if (m < source.rig.meshes.size() && is_rigged(source.rig.meshes[m])) continue;
+    SourceMesh& mesh = source.meshes[m];
     before += mesh.indices.size() / 3;
     subdivide(mesh, longest);
     after += mesh.indices.size() / 3;
@@ -122,12 +133,31 @@ SceneRequirements require(const Scene& scene, std::uint32_t degenerate, std::uin
   return r;
 }
 
-void count_motion(const SceneSource& source, SceneRequirements& r) {
-  r.clips = static_cast<std::uint32_t>(source.rig.clips.size());
-  for (std::size_t i = 0; i < source.rig.instances.size(); ++i) {
-    if (source.rig.instances[i].skin >= 0) ++r.skinned_instances;
-    if (!source.rig.meshes[source.instances[i].mesh].morphs.empty()) ++r.morphed_instances;
+void count_motion(const Scene& scene, SceneRequirements& r) {
+  if (!scene.motion) return;
+  const SceneMotion& motion = *scene.motion;
+  r.clips = static_cast<std::uint32_t>(motion.source.rig.clips.size());
+  r.rigid_objects = static_cast<std::uint32_t>(motion.objects.size());
+  for (const MovingPart& part : motion.parts) {
+    if (!part.mover.deforms) continue;
+    ++r.deformed_parts;
+    r.deformed_points += part.positions.count;
   }
+}
+
+/// Finds what moves, and makes boxes of all places where it ever is.
+void set_in_motion(const FlatMesh& flat, const std::vector<TriangleGroup>& groups,
+                   const std::vector<OrderedGroup>& ordered, const std::vector<VertexOrigin>& origins,
+                   std::span<const InstanceMotion> motions, SceneSource source, Scene& scene) {
+  if (flat.instances.empty()) return;
+  std::vector<std::uint32_t> instances;
+  instances.reserve(ordered.size());
+  for (const OrderedGroup& o : ordered) instances.push_back(flat.instances[groups[o.group].triangle]);
+  std::vector<std::uint32_t> sources;
+  sources.reserve(origins.size());
+  for (const VertexOrigin& origin : origins) sources.push_back(origin.vertex);
+  scene.motion = list_motion(scene, instances, sources, motions, std::move(source));
+  if (scene.motion) sweep(scene);
 }
 
 }  // namespace
@@ -135,7 +165,8 @@ void count_motion(const SceneSource& source, SceneRequirements& r) {
 Result<Scene> assemble(SceneSource source, const AssembleSettings& settings) {
   std::uint32_t split = 0;
   if (settings.split_huge_triangles) split = split_huge_triangles(source);
-  auto flattened = flatten(source);
+  const std::vector<InstanceMotion> motions = find_movers(source);
+  auto flattened = flatten(source, motions);
   if (flattened.has_error()) return flattened.error();
   const FlatMesh& flat = *flattened;
   if (source.materials.size() > std::numeric_limits<std::uint16_t>::max()) {
@@ -164,12 +195,13 @@ Result<Scene> assemble(SceneSource source, const AssembleSettings& settings) {
     scene.lights.back().position = glm::vec3(light.position - scene.origin);
   }
   const auto ordered = order_by_chunk(flat, groups, scene.materials, settings.chunk_triangles);
-  renumber_vertices(flat, groups, ordered, scene);
+  const std::vector<VertexOrigin> origins = renumber_vertices(flat, groups, ordered, scene);
   list_triangles(scene);
   list_chunks(ordered, scene);
+  set_in_motion(flat, groups, ordered, origins, motions, std::move(source), scene);
   list_lights(scene);
   scene.requirements = require(scene, flat.degenerate_triangles, split);
-  count_motion(source, scene.requirements);
+  count_motion(scene, scene.requirements);
   return scene;
 }
 

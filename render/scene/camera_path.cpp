@@ -79,6 +79,17 @@ Pose atrium_walk(double t) {
   return pose;
 }
 
+/// Eight seconds along an arc about the parade at 1.1 m/s, looking at its middle.
+Pose parade_walk(double t) {
+  constexpr double kRadius = 5.2;
+  const double angle = 0.9 - 1.1 * t / kRadius;
+  const double stride = 2 * std::numbers::pi * 1.8 * t;
+  Pose pose;
+  pose.position = {kRadius * std::sin(angle), 1.68 + 0.025 * std::sin(stride), kRadius * std::cos(angle)};
+  pose.orientation = looking(angle + 0.1 * std::sin(0.8 * t), -0.12);
+  return pose;
+}
+
 template <class At>
 std::vector<CameraPath::Key> sample(const At& at, double seconds) {
   std::vector<CameraPath::Key> keys;
@@ -155,11 +166,14 @@ Result<CameraPath> CameraPath::load(const std::string& name_or_file) {
         },
         2));
   }
+  if (name_or_file == "parade") return CameraPath(sample(parade_walk, 8));
+  if (name_or_file == "parade-still") return standing(parade_walk(2));
   std::error_code ignored;
   std::ifstream file(name_or_file);
   if (!std::filesystem::is_regular_file(name_or_file, ignored) || !file) {
-    return Error{SceneError::kNotFound, "camera path '" + name_or_file +
-                                            "' (built-in: atrium, atrium-about, atrium-still, atrium-turn)"};
+    std::string known;
+    for (const std::string& name : builtin()) known += (known.empty() ? "" : ", ") + name;
+    return Error{SceneError::kNotFound, "camera path '" + name_or_file + "' (built-in: " + known + ")"};
   }
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   auto path = parse(text);
@@ -168,7 +182,7 @@ Result<CameraPath> CameraPath::load(const std::string& name_or_file) {
 }
 
 std::vector<std::string> CameraPath::builtin() {
-  return {"atrium", "atrium-about", "atrium-still", "atrium-turn"};
+  return {"atrium", "atrium-about", "atrium-still", "atrium-turn", "parade", "parade-still"};
 }
 
 CameraPath CameraPath::standing(const Pose& pose) {

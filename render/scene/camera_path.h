@@ -27,7 +27,7 @@ class CameraPath {
   static Result<CameraPath> load(const std::string& name_or_file);
   /// Names of the built-in paths: "atrium" walks through the built-in scene, "atrium-turn" spins once about
   /// itself in 4 s, "atrium-about" stands, turns by 180 degrees within half a second and stands,
-  /// "atrium-still" stands.
+  /// "atrium-still" stands; "parade" walks about the scene of that name, "parade-still" stands there.
   static std::vector<std::string> builtin();
   /// A viewer who stands still.
   static CameraPath standing(const Pose& pose);

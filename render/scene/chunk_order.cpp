@@ -16,6 +16,7 @@ struct Item {
   std::uint8_t draw_class = 0;
   std::uint8_t triangles = 0;
   std::uint16_t material = 0;
+  std::uint32_t instance = 0;  ///< 1 + the one that moves it, or 0
   std::uint32_t group = 0;
   glm::vec3 middle{0.0F};
 };
@@ -32,7 +33,8 @@ std::vector<Item> items_of(const FlatMesh& flat, const std::vector<TriangleGroup
     const TriangleGroup& group = groups[g];
     const std::uint16_t material = flat.materials[group.triangle];
     items.push_back(
-        {class_rank(materials[material].draw), group.count, material, g,
+        {class_rank(materials[material].draw), group.count, material,
+         flat.instances.empty() ? 0 : flat.instances[group.triangle], g,
          0.5F * (flat.vertices[group.corners[0]].position + flat.vertices[group.corners[2]].position)});
   }
   return items;
@@ -97,7 +99,9 @@ std::vector<OrderedGroup> order_by_chunk(const FlatMesh& flat, const std::vector
                                          const std::vector<Material>& materials,
                                          std::uint32_t most_triangles) {
   std::vector<Item> items = items_of(flat, groups, materials);
-  const auto key = [](const Item& item) { return std::tie(item.draw_class, item.material, item.group); };
+  const auto key = [](const Item& item) {
+    return std::tie(item.draw_class, item.material, item.instance, item.group);
+  };
   std::sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return key(a) < key(b); });
   std::vector<OrderedGroup> out;
   out.reserve(items.size());
@@ -108,7 +112,9 @@ std::vector<OrderedGroup> order_by_chunk(const FlatMesh& flat, const std::vector
   Cutter cutter(most_triangles, walk, out);
   for (std::size_t first = 0; first < items.size();) {
     std::size_t last = first + 1;
-    while (last < items.size() && items[last].material == items[first].material) ++last;
+    while (last < items.size() && items[last].material == items[first].material &&
+           items[last].instance == items[first].instance)
+      ++last;
     cutter.cut(std::span(items).subspan(first, last - first));
     first = last;
   }

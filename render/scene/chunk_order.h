@@ -16,10 +16,11 @@ struct OrderedGroup {
   std::uint16_t material = 0;
 };
 
-/// Orders groups by draw class and material, and within each cuts them into compact chunks: the box of their
-/// centres is halved along its longest side until at most `most_triangles` are left. Against runs along a
-/// Morton curve the boxes have about half the surface, so fewer are in view and fewer lights reach each.
-/// Within a chunk neighbours come one after the other (walk_order.h).
+/// Orders groups by draw class, material and the instance that moves them (none first), and within each cuts
+/// them into compact chunks: the box of their centres is halved along its longest side until at most
+/// `most_triangles` are left. Against runs along a Morton curve the boxes have about half the surface, so
+/// fewer are in view and fewer lights reach each. Within a chunk neighbours come one after the other
+/// (walk_order.h).
 std::vector<OrderedGroup> order_by_chunk(const FlatMesh& flat, const std::vector<TriangleGroup>& groups,
                                          const std::vector<Material>& materials,
                                          std::uint32_t most_triangles);

@@ -2,6 +2,7 @@
 
 #include "render/scene/scene_error.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -9,6 +10,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace atlaswire::render {
 
@@ -49,12 +52,15 @@ class Deduplicator {
     return h;
   }
   void grow() {
-    slots_.assign(slots_.size() * 2, kEmptySlot);
-    for (std::uint32_t i = 0; i < values_.size(); ++i) {
-      std::size_t slot = hash(values_[i]) & (slots_.size() - 1);
-      while (slots_[slot] != kEmptySlot) slot = (slot + 1) & (slots_.size() - 1);
-      slots_[slot] = i;
+    // Not every value need have been numbered here.
+    std::vector<std::uint32_t> wider(slots_.size() * 2, kEmptySlot);
+    for (const std::uint32_t i : slots_) {
+      if (i == kEmptySlot) continue;
+      std::size_t slot = hash(values_[i]) & (wider.size() - 1);
+      while (wider[slot] != kEmptySlot) slot = (slot + 1) & (wider.size() - 1);
+      wider[slot] = i;
     }
+    slots_ = std::move(wider);
   }
   std::vector<Value>& values_;
   std::vector<std::uint32_t> slots_;
@@ -104,11 +110,80 @@ glm::vec3 direction(const glm::dmat3& m, const glm::vec3& v) {
   return length > 0 && std::isfinite(length) ? glm::vec3(d / length) : glm::vec3(0, 1, 0);
 }
 
+/// A vertex of what moves: two are one only if they move alike.
+struct MovingVertex {
+  ShadingVertex vertex;
+  std::uint32_t rig = 0;
+};
+static_assert(sizeof(MovingVertex) == 32);
+
+/// Entries of a rig that say the same, by the number of one of them.
+std::vector<std::uint32_t> equal_rigs(const RigMesh& rig) {
+  const std::size_t count =
+      rig.joints.empty() ? rig.morphs.empty() ? 0 : rig.morphs[0].size() : rig.joints.size();
+  const auto compare = [&](std::uint32_t a, std::uint32_t b) {
+    if (!rig.joints.empty()) {
+      if (rig.joints[a] != rig.joints[b]) return rig.joints[a] < rig.joints[b] ? -1 : 1;
+      if (rig.weights[a] != rig.weights[b]) return rig.weights[a] < rig.weights[b] ? -1 : 1;
+    }
+    for (const std::vector<glm::vec3>& morph : rig.morphs) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (morph[a][axis] != morph[b][axis]) return morph[a][axis] < morph[b][axis] ? -1 : 1;
+      }
+    }
+    return 0;
+  };
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return compare(a, b) < 0; });
+  std::vector<std::uint32_t> same(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool repeats = i > 0 && compare(order[i - 1], order[i]) == 0;
+    same[order[i]] = repeats ? same[order[i - 1]] : order[i];
+  }
+  return same;
+}
+
 class Flattener {
  public:
   Flattener(FlatMesh& out, std::size_t expected) : out_(out), vertices_(out.vertices, expected) {}
 
   void add(const SourceMesh& mesh, const SourceInstance& instance) {
+    place_all(mesh, instance, [this](const ShadingVertex& v, std::uint32_t) { return vertices_.number(v); });
+  }
+
+  /// An instance whose vertices are its own alone. `number`: 1 + that of the instance.
+  void add_moving(const SourceMesh& mesh, const SourceInstance& instance, const RigMesh* rig,
+                  std::uint32_t number) {
+    const auto first = static_cast<std::uint32_t>(out_.vertices.size());
+    const std::size_t first_triangle = out_.materials.size();
+    std::vector<MovingVertex> own;
+    Deduplicator<MovingVertex> numbers(own, mesh.vertices.size());
+    const std::vector<std::uint32_t> same = rig == nullptr ? std::vector<std::uint32_t>{} : equal_rigs(*rig);
+    out_.origins.resize(first);
+    place_all(mesh, instance, [&](const ShadingVertex& v, std::uint32_t index) {
+      const std::uint32_t entry = same.empty() ? 0 : same[mesh.vertices[index].rig];
+      const std::uint32_t n = numbers.number({v, entry});
+      if (first + n == out_.vertices.size()) {
+        out_.vertices.push_back(v);
+        out_.origins.push_back({number, index, aparts_ + entry});
+      }
+      return first + n;
+    });
+    aparts_ += static_cast<std::uint32_t>(std::max<std::size_t>(1, same.size()));
+    out_.instances.resize(first_triangle);
+    out_.instances.resize(out_.materials.size(), number);
+  }
+
+  void finish() {
+    if (out_.instances.empty()) return;
+    out_.origins.resize(out_.vertices.size());
+    out_.instances.resize(out_.materials.size());
+  }
+
+ private:
+  template <class Number>
+  void place_all(const SourceMesh& mesh, const SourceInstance& instance, const Number& number_of) {
     const glm::dmat3 linear(instance.to_scene);
     const double determinant = glm::determinant(linear);
     const bool mirrored = determinant < 0;
@@ -119,10 +194,11 @@ class Flattener {
       if (numbers[index] == kEmptySlot) {
         const SourceVertex& v = mesh.vertices[index];
         const bool negative = (v.tangent.w < 0) != mirrored;
-        numbers[index] = vertices_.number({canonical(glm::vec3(place(instance, v.position) - out_.origin)),
-                                           pack_normal(direction(normals, v.normal)),
-                                           pack_tangent(direction(linear, glm::vec3(v.tangent)), negative),
-                                           v.uv + glm::vec2(0.0F)});
+        numbers[index] = number_of(
+            {canonical(glm::vec3(place(instance, v.position) - out_.origin)),
+             pack_normal(direction(normals, v.normal)),
+             pack_tangent(direction(linear, glm::vec3(v.tangent)), negative), v.uv + glm::vec2(0.0F)},
+            index);
       }
       return numbers[index];
     };
@@ -141,7 +217,6 @@ class Flattener {
     }
   }
 
- private:
   [[nodiscard]] bool degenerate(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     const glm::vec3 pa = out_.vertices[a].position;
     const glm::dvec3 ab(out_.vertices[b].position - pa);
@@ -151,11 +226,12 @@ class Flattener {
 
   FlatMesh& out_;
   Deduplicator<ShadingVertex> vertices_;
+  std::uint32_t aparts_ = 1;  ///< 0: what rests
 };
 
 }  // namespace
 
-Result<FlatMesh> flatten(const SceneSource& source) {
+Result<FlatMesh> flatten(const SceneSource& source, std::span<const InstanceMotion> motions) {
   const auto bounds = bounds_of(source);
   if (bounds.has_error()) return bounds.error();
   FlatMesh out;
@@ -165,17 +241,43 @@ Result<FlatMesh> flatten(const SceneSource& source) {
   for (const SourceInstance& instance : source.instances)
     expected += source.meshes[instance.mesh].vertices.size();
   Flattener flattener(out, expected);
-  for (const SourceInstance& instance : source.instances)
-    flattener.add(source.meshes[instance.mesh], instance);
+  for (std::uint32_t i = 0; i < source.instances.size(); ++i) {
+    const SourceInstance& instance = source.instances[i];
+    const SourceMesh& mesh = source.meshes[instance.mesh];
+    if (motions[i] == InstanceMotion::kRests) {
+      flattener.add(mesh, instance);
+    } else {
+      const bool deforms = motions[i] == InstanceMotion::kDeforms;
+      flattener.add_moving(mesh, instance, deforms ? &source.rig.meshes[instance.mesh] : nullptr, i + 1);
+    }
+  }
+  flattener.finish();
   if (out.indices.empty()) return Error{SceneError::kEmpty, source.name + ": every triangle is degenerate"};
   return out;
 }
 
-std::vector<VertexId> weld(const std::vector<ShadingVertex>& vertices, std::vector<glm::vec3>& positions) {
-  Deduplicator<glm::vec3> points(positions, vertices.size());
+namespace {
+
+struct Point {
+  glm::vec3 position;
+  std::uint32_t apart = 0;
+};
+static_assert(sizeof(Point) == 16);
+
+}  // namespace
+
+std::vector<VertexId> weld(const std::vector<ShadingVertex>& vertices, std::span<const VertexOrigin> origins,
+                           std::vector<glm::vec3>& positions) {
+  std::vector<Point> points;
+  Deduplicator<Point> numbers(points, vertices.size());
   std::vector<VertexId> out;
   out.reserve(vertices.size());
-  for (const ShadingVertex& v : vertices) out.push_back(static_cast<VertexId>(points.number(v.position)));
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::uint32_t apart = origins.empty() ? 0 : origins[i].apart;
+    out.push_back(static_cast<VertexId>(numbers.number({vertices[i].position, apart})));
+  }
+  positions.reserve(points.size());
+  for (const Point& point : points) positions.push_back(point.position);
   return out;
 }
 

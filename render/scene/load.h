@@ -9,7 +9,7 @@
 
 namespace atlaswire::render {
 
-/// Scenes that need no file; each name may carry options ("atrium:0.2:lights=64", see AtriumOptions).
+/// Scenes that need no file; "atrium" may carry options ("atrium:0.2:lights=64", see AtriumOptions).
 std::vector<std::string> builtin_scenes();
 
 /// A built-in scene by name, or a glTF 2.0 file (.gltf or .glb). Errors: SceneError, naming file and part.

@@ -37,10 +37,12 @@ std::vector<std::string> explain(const SceneRequirements& r) {
            r.sun ? "a directional light: one shadow pass, filtered" : "no directional light: no shadow pass"),
       line("punctual lights", r.lights > 0,
            fmt::format("{} in all, at most {} reach one chunk", r.lights, r.most_lights_per_chunk)),
-      line("motion", false,
-           r.clips == 0 ? std::string("nothing moves")
-                        : fmt::format("{} clips, {} skinned and {} morphed instances: shown at rest", r.clips,
-                                      r.skinned_instances, r.morphed_instances)),
+      line("motion", r.clips > 0,
+           r.clips == 0
+               ? std::string("nothing moves: no buffer is written twice, no message sent")
+               : fmt::format("{} clips move {} rigid objects and deform {} parts of {} points: buffers and "
+                             "the shadow map follow each frame, so do messages",
+                             r.clips, r.rigid_objects, r.deformed_parts, r.deformed_points)),
   };
 }
 

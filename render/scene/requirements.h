@@ -23,10 +23,11 @@ struct SceneRequirements {
   std::uint32_t patches_of[4] = {0, 0, 0, 0};  ///< patches with 1, 2, 3 triangles at [1], [2], [3]
   std::uint32_t degenerate_triangles = 0;      ///< dropped at load
   std::uint32_t split_triangles = 0;  ///< added at load by splitting huge ones, each mesh counted once
-  // Of what moves (rig.h). Streams show it at rest: docs/ARCHITECTURE.md, "Decisions".
+  // Of what moves (scene_motion.h).
   std::uint32_t clips = 0;
-  std::uint32_t skinned_instances = 0;
-  std::uint32_t morphed_instances = 0;
+  std::uint32_t rigid_objects = 0;
+  std::uint32_t deformed_parts = 0;
+  std::uint32_t deformed_points = 0;
   /// The atlas needs a coverage plane beside its colours.
   [[nodiscard]] bool alpha() const { return alpha_mask || alpha_blend; }
 };

@@ -11,10 +11,13 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace atlaswire::render {
+
+struct SceneMotion;
 
 /// No texture.
 inline constexpr std::int32_t kNoTexture = -1;
@@ -70,6 +73,8 @@ static_assert(sizeof(ShadingVertex) == 28);
 std::uint32_t pack_normal(const glm::vec3& n);
 glm::vec3 unpack_normal(std::uint32_t packed);
 std::uint32_t pack_tangent(const glm::vec3& t, bool negative_handed);
+glm::vec3 unpack_tangent(std::uint32_t packed);
+inline bool is_negative_handed(std::uint32_t packed_tangent) { return (packed_tangent & 1U) != 0; }
 
 /// Unit of visibility and memory: 1..3 adjacent triangles of one material (base/patch_layout.h gives the
 /// corner order; winding is the triangles' own, counter-clockwise in front).
@@ -87,9 +92,10 @@ struct Box {
   glm::vec3 high{0.0F};
 };
 
-/// Neighbouring patches of one material: unit of culling and of light lists.
+/// Neighbouring patches of one material, and of one instance if they move: unit of culling and of light
+/// lists.
 struct Chunk {
-  Box box;
+  Box box;  ///< of what moves: all places where it ever is
   std::uint32_t first_patch = 0;
   std::uint32_t patch_count = 0;
   std::uint32_t first_triangle = 0;  ///< into Scene::indices / 3
@@ -116,15 +122,16 @@ struct Sun {
 };
 
 /// A scene ready for rendering: instances flattened into scene space, triangles grouped into patches,
-/// patches numbered so that each material's lie together (opaque, then masked, then blended) and each
-/// chunk's lie together within it. Immutable once made.
+/// patches numbered so that each material's lie together (opaque, then masked, then blended), each moving
+/// instance's and each chunk's together within it. What moves is at rest here (moved_scene.h). Immutable once
+/// made.
 struct Scene {
   std::string name;
-  glm::dvec3 origin{0.0};  ///< centre of the bounding box; float positions are relative to it
-  Box box;
+  glm::dvec3 origin{0.0};  ///< centre of the box at rest; float positions are relative to it
+  Box box;                 ///< of all places where something ever is
   std::vector<ShadingVertex> vertices;
-  std::vector<glm::vec3> positions;           ///< welded: one per distinct point, relative to origin
-  std::vector<Patch> patches;                 ///< by PatchId
+  std::vector<glm::vec3> positions;  ///< welded: one per distinct point that moves as one, relative to origin
+  std::vector<Patch> patches;        ///< by PatchId
   std::vector<std::uint32_t> indices;         ///< 3 a triangle into `vertices`, triangles in patch order
   std::vector<std::uint32_t> triangle_patch;  ///< patch of each triangle in `indices`
   std::vector<Chunk> chunks;                  ///< in patch order, covering all
@@ -140,6 +147,7 @@ struct Scene {
   float exposure = 1.0F;         ///< multiplies radiance before tone mapping
   Pose start;                    ///< a sensible first view
   SceneRequirements requirements;
+  std::shared_ptr<const SceneMotion> motion;  ///< null: nothing moves
 };
 
 }  // namespace atlaswire::render

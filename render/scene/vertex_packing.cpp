@@ -49,4 +49,6 @@ std::uint32_t pack_tangent(const glm::vec3& t, bool negative_handed) {
   return x | (y << 16U) | (negative_handed ? 1U : 0U);
 }
 
+glm::vec3 unpack_tangent(std::uint32_t packed) { return unpack_normal(packed & 0xfffefffeU); }
+
 }  // namespace atlaswire::render

@@ -148,13 +148,13 @@ TEST(Parade, MovesSmoothlyAndJoinsItsBeginning) {
   EXPECT_EQ(deformed, 3U);
 }
 
-TEST(Parade, IsAssembledAtRestAndSaysWhatWouldMove) {
+TEST(Parade, IsAssembledAtRestAndSaysWhatMoves) {
   const auto scene = assemble(make_parade({.figures = 2, .cloths = 1, .orbiters = 4}));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->requirements.clips, 1U);
-  EXPECT_EQ(scene->requirements.skinned_instances, 2U);
-  EXPECT_EQ(scene->requirements.morphed_instances, 1U);
-  EXPECT_NE(explain(scene->requirements).back().find("shown at rest"), std::string::npos);
+  EXPECT_EQ(scene->requirements.rigid_objects, 3U) << "of four solids one rests";
+  EXPECT_EQ(scene->requirements.deformed_parts, 3U);
+  EXPECT_NE(explain(scene->requirements).back().find("3 rigid objects"), std::string::npos);
 }
 
 TEST(Parade, KeepsItsWeightsWhole) {
