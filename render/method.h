@@ -22,6 +22,7 @@
 namespace atlaswire::render {
 
 class Device;
+class MovedScene;
 
 /// What a caller may know of a view beyond its pose.
 struct ViewHints {
@@ -40,11 +41,13 @@ struct FrameRequest {
   /// frame on, so that a receiver can begin here to derive them, and admission begins anew; only with
   /// `intra`.
   bool restart = false;
+  std::optional<double> scene_seconds;  ///< into the scene's clips; nullopt: it is shown at rest
   ViewHints hints;
 };
 
 /// How long each of a method's stages took; zero where a stage does not apply.
 struct RenderTimings {
+  Duration motion{};      ///< posing what moves, on the host
   Duration visibility{};  ///< id passes and marking
   Duration allocation{};  ///< level selection and atlas memory
   Duration shading{};     ///< shadows and shading
@@ -77,6 +80,7 @@ struct RenderedFrame {
   const LayoutChange* change = nullptr;    ///< valid until the next render; null: the method has no atlas
   std::span<const BlockRequest> requests;  ///< what `change` answers; as long valid; ascending
   std::optional<RenderedView> view;        ///< nullopt: the method has an atlas
+  const MovedScene* moved = nullptr;       ///< where things are in it; valid until the next render
   AtlasUsage usage;
   LayoutCounts layout;
   std::uint32_t visible_patches = 0;

@@ -35,10 +35,10 @@ struct BlendedPatch {
   std::uint32_t chunk = 0;
 };
 
-float distance2_of(const Scene& scene, const Patch& patch, const glm::vec3& eye) {
+float distance2_of(const MovedScene& moved, const Patch& patch, const glm::vec3& eye) {
   glm::vec3 sum{0.0F};
   const std::uint32_t corners = corner_count(patch.triangles);
-  for (std::uint32_t i = 0; i < corners; ++i) sum += scene.vertices[patch.vertices[i]].position;
+  for (std::uint32_t i = 0; i < corners; ++i) sum += moved.vertex(patch.vertices[i]).position;
   const glm::vec3 away = sum / static_cast<float>(corners) - eye;
   return glm::dot(away, away);
 }
@@ -103,14 +103,15 @@ void ForwardPass::draw_scene(const vk::raii::CommandBuffer& commands, const Came
   const glm::vec3 eye{view.high};
   for (std::uint32_t i = 0; i < scene.chunks.size(); ++i) {
     const Chunk& chunk = scene.chunks[i];
-    if (!may_see(view, chunk.box)) continue;
+    const Box& box = scene_->moved().boxes()[i];
+    if (!may_see(view, box)) continue;
     if (scene.materials[chunk.material].draw.alpha != PatchClass::Alpha::kBlend) {
-      const glm::vec3 away = eye - glm::clamp(eye, chunk.box.low, chunk.box.high);
+      const glm::vec3 away = eye - glm::clamp(eye, box.low, box.high);
       solid.emplace_back(glm::dot(away, away), i);
       continue;
     }
     for (std::uint32_t p = chunk.first_patch; p < chunk.first_patch + chunk.patch_count; ++p) {
-      blended.push_back({distance2_of(scene, scene.patches[p], eye), p, i});
+      blended.push_back({distance2_of(scene_->moved(), scene.patches[p], eye), p, i});
     }
   }
   std::ranges::sort(solid);

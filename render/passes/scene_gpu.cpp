@@ -59,30 +59,47 @@ Buffer upload(SubmitContext& context, const std::string& name, std::vector<std::
   return target;
 }
 
-std::vector<ShadingVertex> make_fourth_corners(const Scene& scene) {
+std::vector<std::uint32_t> find_solos(const Scene& scene) {
+  std::vector<std::uint32_t> solos;
+  for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    if (scene.patches[i].triangles == 1) solos.push_back(i);
+  }
+  return solos;
+}
+
+std::vector<ShadingVertex> make_fourth_corners(const Scene& scene, std::span<const std::uint32_t> solos) {
   std::vector<ShadingVertex> made;
-  for (const Patch& patch : scene.patches) {
-    if (patch.triangles != 1) continue;
-    const ShadingVertex& a = scene.vertices[patch.vertices[0]];
-    const ShadingVertex& b = scene.vertices[patch.vertices[1]];
-    const ShadingVertex& c = scene.vertices[patch.vertices[2]];
-    const glm::vec3 first = unpack_normal(a.normal);
-    const glm::vec3 across = unpack_normal(b.normal) + unpack_normal(c.normal) - first;
-    made.push_back({.position = b.position + c.position - a.position,
-                    .normal = pack_normal(glm::dot(across, across) > 0.01F ? across : first),
-                    .tangent = b.tangent,
-                    .uv = b.uv + c.uv - a.uv});
+  made.reserve(solos.size());
+  for (const std::uint32_t patch : solos) {
+    const auto& corners = scene.patches[patch].vertices;
+    made.push_back(
+        fourth_corner(scene.vertices[corners[0]], scene.vertices[corners[1]], scene.vertices[corners[2]]));
   }
   return made;
 }
 
-std::vector<std::pair<PatchId, std::uint32_t>> number_fourth_corners(const Scene& scene) {
-  std::vector<std::pair<PatchId, std::uint32_t>> numbers;
-  auto vertex = static_cast<std::uint32_t>(scene.vertices.size());
-  for (std::size_t i = 0; i < scene.patches.size(); ++i) {
-    if (scene.patches[i].triangles == 1) numbers.emplace_back(static_cast<PatchId>(i), vertex++);
+Buffer upload_vertices(SubmitContext& context, const Scene& scene, std::span<const std::uint32_t> solos) {
+  const std::vector<ShadingVertex> corners = make_fourth_corners(scene, solos);
+  return upload(context, "vertices",
+                {std::as_bytes(std::span(scene.vertices)), std::as_bytes(std::span(corners))},
+                Usage::eVertexBuffer | Usage::eStorageBuffer);
+}
+
+/// What the sun's view must hold: what rests, and all places where something moves.
+ShadowFit fit_shadow_to(const Scene& scene, float size) {
+  if (!scene.motion) return fit_shadow(scene.vertices, scene.sun.direction, size);
+  std::vector<ShadingVertex> held = scene.vertices;
+  for (const MovingPart& part : scene.motion->parts) {
+    for (std::uint32_t c = part.chunks.first; c < part.chunks.end(); ++c) {
+      const Box& box = scene.chunks[c].box;
+      for (unsigned corner = 0; corner < 8; ++corner) {
+        held.push_back({.position = {(corner & 1U) != 0 ? box.low.x : box.high.x,
+                                     (corner & 2U) != 0 ? box.low.y : box.high.y,
+                                     (corner & 4U) != 0 ? box.low.z : box.high.z}});
+      }
+    }
   }
-  return numbers;
+  return fit_shadow(held, scene.sun.direction, size);
 }
 
 bool has_sun(const Scene& scene) {
@@ -147,16 +164,12 @@ std::vector<Binding> material_bindings() {
 
 SceneGpu::SceneGpu(Device& device, std::shared_ptr<const Scene> scene)
     : scene_(std::move(scene)),
+      moved_(scene_),
       context_(device, "scene upload", 1),
-      fourth_corners_(make_fourth_corners(*scene_)),
-      solo_patches_(number_fourth_corners(*scene_)),
+      solo_patches_(find_solos(*scene_)),
       lights_(make_light_table(*scene_)),
-      shadow_fit_(
-          fit_shadow(scene_->vertices, scene_->sun.direction, static_cast<float>(shadow_side(*scene_)))),
-      vertices_(
-          upload(context_, "vertices",
-                 {std::as_bytes(std::span(scene_->vertices)), std::as_bytes(std::span(fourth_corners_))},
-                 Usage::eVertexBuffer | Usage::eStorageBuffer)),
+      shadow_fit_(fit_shadow_to(*scene_, static_cast<float>(shadow_side(*scene_)))),
+      vertices_(upload_vertices(context_, *scene_, solo_patches_)),
       indices_(upload(context_, "indices", {std::as_bytes(std::span(scene_->indices))},
                       Usage::eIndexBuffer | Usage::eStorageBuffer)),
       triangle_patch_(upload(context_, "patch of triangle",
@@ -191,14 +204,30 @@ SceneGpu::SceneGpu(Device& device, std::shared_ptr<const Scene> scene)
   context_.run([&](const vk::raii::CommandBuffer& commands) {
     if (!sun) clear_shadow_map(commands, shadow_map_);
   });
-  if (sun) render_shadow_map(context_, *this, shadow_map_);
+  if (scene_->motion) moved_vertices_.emplace(device, *scene_, solo_patches_);
+  if (!sun) return;
+  shadows_.emplace(device, *this);
+  context_.run(
+      [&](const vk::raii::CommandBuffer& commands) { shadows_->record(commands, *this, shadow_map_); });
+  if (!scene_->motion) shadows_.reset();
+}
+
+void SceneGpu::record_moves(const vk::raii::CommandBuffer& commands) {
+  if (!moved_vertices_ || !moved_vertices_->record(commands, *scene_, moved_, vertices_)) return;
+  if (shadows_) shadows_->record(commands, *this, shadow_map_);
+}
+
+void SceneGpu::move_to(std::optional<double> seconds) {
+  if (!moved_vertices_) return;
+  pose(seconds);
+  context_.run([&](const vk::raii::CommandBuffer& commands) { record_moves(commands); });
 }
 
 std::uint32_t SceneGpu::fourth_corner(PatchId patch) const {
-  const auto found =
-      std::ranges::lower_bound(solo_patches_, patch, {}, &std::pair<PatchId, std::uint32_t>::first);
-  AW_ASSERT(found != solo_patches_.end() && found->first == patch);
-  return found->second;
+  const auto found = std::ranges::lower_bound(solo_patches_, value(patch));
+  AW_ASSERT(found != solo_patches_.end() && *found == value(patch));
+  return static_cast<std::uint32_t>(scene_->vertices.size() +
+                                    static_cast<std::size_t>(found - solo_patches_.begin()));
 }
 
 void SceneGpu::write_scene_set() {

@@ -5,24 +5,40 @@
 #include "render/gpu/image.h"
 #include "render/gpu/submit_context.h"
 #include "render/passes/light_table.h"
+#include "render/passes/moved_vertices.h"
 #include "render/passes/shadow_fit.h"
+#include "render/passes/shadow_map.h"
 #include "render/passes/texture_upload.h"
+#include "render/scene/moved_scene.h"
 #include "render/scene/scene.h"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace atlaswire::render {
 
 /// A scene on the device, uploaded once and shared by every pass that draws it: geometry, textures, one
-/// descriptor set a material, lights, and the sun's shadow map (rendered once: the scene does not move).
-/// Immutable afterwards, so any thread may record with it.
+/// descriptor set a material, lights, and the sun's shadow map. At rest until it is posed; only what moves is
+/// written again, and the shadow map drawn again with it. Between poses immutable, so that any thread may
+/// record with it.
 class SceneGpu {
  public:
   SceneGpu(Device& device, std::shared_ptr<const Scene> scene);
 
   [[nodiscard]] const Scene& scene() const { return *scene_; }
+
+  /// Moves the scene to a time, on the host: MovedScene::pose.
+  void pose(std::optional<double> seconds) { moved_.pose(seconds); }
+  /// Brings the device to the last pose, before all that is recorded behind. What was recorded before must be
+  /// over. VisibilityPass does the same for itself.
+  void record_moves(const vk::raii::CommandBuffer& commands);
+  /// Both, and waits.
+  void move_to(std::optional<double> seconds);
+  /// Where things are.
+  [[nodiscard]] const MovedScene& moved() const { return moved_; }
+
   /// ShadingVertex array, then one made-up fourth corner for each patch of one triangle.
   [[nodiscard]] const Buffer& vertices() const { return vertices_; }
   /// 32-bit, three a triangle.
@@ -53,9 +69,9 @@ class SceneGpu {
   void write_material_sets(const Device& device);
 
   std::shared_ptr<const Scene> scene_;
+  MovedScene moved_;
   SubmitContext context_;
-  std::vector<ShadingVertex> fourth_corners_;
-  std::vector<std::pair<PatchId, std::uint32_t>> solo_patches_;  ///< ascending; vertex number
+  std::vector<std::uint32_t> solo_patches_;  ///< of one triangle, ascending
   LightTable lights_;
   ShadowFit shadow_fit_;
   Buffer vertices_;
@@ -73,6 +89,9 @@ class SceneGpu {
   DescriptorSets scene_sets_;
   DescriptorSets material_sets_;
   std::vector<std::uint32_t> features_;
+  // Of a scene that moves.
+  std::optional<MovedVertices> moved_vertices_;
+  std::optional<ShadowPass> shadows_;  ///< and has a sun
 };
 
 }  // namespace atlaswire::render

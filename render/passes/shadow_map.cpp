@@ -1,6 +1,5 @@
 #include "render/passes/shadow_map.h"
 
-#include "render/gpu/pipeline.h"
 #include "render/passes/scene_gpu.h"
 #include "shaders/shaders.h"
 
@@ -47,25 +46,24 @@ void clear_shadow_map(const vk::raii::CommandBuffer& commands, Image& map) {
   use_image(commands, map, ImageUse::kSampledInFragment);
 }
 
-void render_shadow_map(SubmitContext& context, const SceneGpu& scene, Image& map) {
-  const Pipeline solid = make_pipeline(context.device(), scene, false);
-  const Pipeline masked = make_pipeline(context.device(), scene, true);
+ShadowPass::ShadowPass(const Device& device, const SceneGpu& scene)
+    : solid_(make_pipeline(device, scene, false)), masked_(make_pipeline(device, scene, true)) {}
+
+void ShadowPass::record(const vk::raii::CommandBuffer& commands, const SceneGpu& scene, Image& map) const {
   const auto& materials = scene.scene().materials;
-  context.run([&](const vk::raii::CommandBuffer& commands) {
-    begin_depth(commands, map);
-    set_viewport(commands, map.extent());
-    commands.bindVertexBuffers(0, scene.vertices().handle(), vk::DeviceSize{0});
-    commands.bindIndexBuffer(scene.indices().handle(), 0, vk::IndexType::eUint32);
-    for (const Chunk& chunk : scene.scene().chunks) {
-      const auto alpha = materials[chunk.material].draw.alpha;
-      if (alpha == PatchClass::Alpha::kBlend) continue;
-      const Pipeline& pipeline = alpha == PatchClass::Alpha::kMask ? masked : solid;
-      pipeline.bind(commands, {scene.scene_set(), scene.material_set(chunk.material)});
-      commands.drawIndexed(chunk.triangle_count * 3, 1, chunk.first_triangle * 3, 0, 0);
-    }
-    commands.endRendering();
-    use_image(commands, map, ImageUse::kSampledInFragment);
-  });
+  begin_depth(commands, map);
+  set_viewport(commands, map.extent());
+  commands.bindVertexBuffers(0, scene.vertices().handle(), vk::DeviceSize{0});
+  commands.bindIndexBuffer(scene.indices().handle(), 0, vk::IndexType::eUint32);
+  for (const Chunk& chunk : scene.scene().chunks) {
+    const auto alpha = materials[chunk.material].draw.alpha;
+    if (alpha == PatchClass::Alpha::kBlend) continue;
+    const Pipeline& pipeline = alpha == PatchClass::Alpha::kMask ? masked_ : solid_;
+    pipeline.bind(commands, {scene.scene_set(), scene.material_set(chunk.material)});
+    commands.drawIndexed(chunk.triangle_count * 3, 1, chunk.first_triangle * 3, 0, 0);
+  }
+  commands.endRendering();
+  use_image(commands, map, ImageUse::kSampledInFragment);
 }
 
 }  // namespace atlaswire::render

@@ -69,6 +69,7 @@ VisibilityPass::VisibilityPass(Device& device, const SceneGpu& scene, const Visi
   if (settings.occlusion) {
     occlusion_.emplace(device, static_cast<std::uint32_t>(settings.max_views * scene.scene().chunks.size()));
   }
+  if (scene.scene().motion) moved_.emplace(device, scene.scene());
   AW_ASSERT(settings.max_views >= 1 && settings.fov_scale >= 1 && settings.id_scale > 0);
   sets_.write(0, 1, geometry_.marks);
   sets_.write(0, 3, geometry_.positions);
@@ -126,6 +127,7 @@ void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camer
   make_targets(view.extent);
   stats_ = {.views = static_cast<std::uint32_t>(poses.size())};
   find_known_chunks();
+  if (moved_) moved_->record(commands, scene_->moved(), geometry_);
   clear_results(commands);
   for (std::uint32_t i = 0; i < poses.size(); ++i) {
     view.pose = poses[i];
@@ -140,18 +142,19 @@ void VisibilityPass::record(const vk::raii::CommandBuffer& commands, const Camer
 void VisibilityPass::record_view(const vk::raii::CommandBuffer& commands, const Camera& view,
                                  std::uint32_t index) {
   const Scene& scene = scene_->scene();
+  const std::span<const Box> boxes = scene_->moved().boxes();
   const ViewVolume volume(view, scene.origin);
   std::vector<std::uint32_t> known;
   std::vector<std::uint32_t> others;
   for (std::uint32_t i = 0; i < scene.chunks.size(); ++i) {
-    if (volume.may_see(scene.chunks[i].box)) (known_[i] ? known : others).push_back(i);
+    if (volume.may_see(boxes[i])) (known_[i] ? known : others).push_back(i);
   }
   stats_.chunks_in_view += static_cast<std::uint32_t>(known.size() + others.size());
   stats_.chunks_tested += static_cast<std::uint32_t>(others.size());
 
   const visibility::ViewConstants constants = view_constants(view, scene.origin);
   const auto first = static_cast<std::uint32_t>(index * scene.chunks.size());
-  const DrawList sure = list_draws(scene, known, true);
+  const DrawList sure = list_draws(scene, boxes, known, true);
   std::ranges::transform(sure.candidates, commands_.mapped<DrawCommand>().begin() + first, unconditional);
   commands_.flush();
   discard_image(commands, *ids_, ImageUse::kColorTarget);
@@ -159,7 +162,7 @@ void VisibilityPass::record_view(const vk::raii::CommandBuffer& commands, const 
   draw(commands, constants, sure, commands_, first, true);
 
   if (others.empty()) return;
-  const DrawList tested = list_draws(scene, others, false);
+  const DrawList tested = list_draws(scene, boxes, others, false);
   occlusion_->record(commands, *depth_, constants, tested, first);
   use_image(commands, *ids_, ImageUse::kColorTarget);
   use_image(commands, *depth_, ImageUse::kDepthTarget);

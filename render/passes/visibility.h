@@ -6,6 +6,7 @@
 #include "render/gpu/descriptors.h"
 #include "render/gpu/image.h"
 #include "render/gpu/pipeline.h"
+#include "render/passes/moved_id_mesh.h"
 #include "render/passes/scene_gpu.h"
 #include "render/passes/visibility_draws.h"
 #include "render/passes/visibility_geometry.h"
@@ -95,6 +96,7 @@ class VisibilityPass {
   std::unique_ptr<Image> depth_;
   double foveation_ = 0;
   VisibilityStats stats_;
+  std::optional<MovedIdMesh> moved_;  ///< of a scene that moves
 };
 
 }  // namespace atlaswire::render

@@ -9,9 +9,9 @@ bool same_range(const DrawRange& range, const Material& material, std::uint16_t 
          (kind == IdClass::kOpaque || range.material == index);
 }
 
-visibility::ChunkCandidate candidate(const Chunk& chunk) {
-  return {.low = glm::vec4(chunk.box.low, 0),
-          .high = glm::vec4(chunk.box.high, 0),
+visibility::ChunkCandidate candidate(const Chunk& chunk, const Box& box) {
+  return {.low = glm::vec4(box.low, 0),
+          .high = glm::vec4(box.high, 0),
           .index_count = 3 * chunk.triangle_count,
           .first_index = 3 * chunk.first_triangle,
           .padding = {}};
@@ -30,7 +30,8 @@ IdClass id_class(const Material& material) {
   }
 }
 
-DrawList list_draws(const Scene& scene, std::span<const std::uint32_t> chunks, bool merge) {
+DrawList list_draws(const Scene& scene, std::span<const Box> boxes, std::span<const std::uint32_t> chunks,
+                    bool merge) {
   DrawList list;
   for (const std::uint32_t index : chunks) {
     const Chunk& chunk = scene.chunks[index];
@@ -44,7 +45,7 @@ DrawList list_draws(const Scene& scene, std::span<const std::uint32_t> chunks, b
                              .command_count = 0});
     }
     DrawRange& range = list.ranges.back();
-    const visibility::ChunkCandidate next = candidate(chunk);
+    const visibility::ChunkCandidate next = candidate(chunk, boxes[index]);
     if (merge && range.command_count > 0) {
       visibility::ChunkCandidate& last = list.candidates.back();
       if (last.first_index + last.index_count == next.first_index) {

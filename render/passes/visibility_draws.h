@@ -31,8 +31,9 @@ struct DrawList {
 /// all hole. So only textured ones need the fragment test, but all of them take it: it is the same picture.
 IdClass id_class(const Material& material);
 
-/// The list that draws the chunks `chunks` (ascending). With `merge`, neighbours of one range become one
-/// command.
-DrawList list_draws(const Scene& scene, std::span<const std::uint32_t> chunks, bool merge);
+/// The list that draws the chunks `chunks` (ascending), which are where `boxes` (by chunk) say. With `merge`,
+/// neighbours of one range become one command.
+DrawList list_draws(const Scene& scene, std::span<const Box> boxes, std::span<const std::uint32_t> chunks,
+                    bool merge);
 
 }  // namespace atlaswire::render

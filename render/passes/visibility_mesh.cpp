@@ -1,6 +1,7 @@
 #include "render/passes/visibility_mesh.h"
 
 #include "render/passes/visibility_draws.h"
+#include "render/scene/scene_motion.h"
 
 #include <algorithm>
 #include <array>
@@ -17,10 +18,13 @@ class VertexStream {
  public:
   VertexStream(std::vector<Vertex>& out, std::size_t sources) : out_(&out), first_copy_(sources, kNone) {}
 
+  /// Of each vertex made.
+  [[nodiscard]] const std::vector<std::uint32_t>& sources() const { return sources_; }
+
   /// The vertex that any triangle may use.
   std::uint32_t use(std::uint32_t source, const Vertex& vertex) {
     std::uint32_t& copy = first_copy_[source];
-    if (copy == kNone) copy = append(vertex, kNone);
+    if (copy == kNone) copy = append(source, vertex, kNone);
     return copy;
   }
   /// Does its first copy lead no patch yet?
@@ -29,21 +33,23 @@ class VertexStream {
   }
   /// A vertex that leads `patch`: the first copy if that is free, else a new one.
   std::uint32_t lead(std::uint32_t source, const Vertex& vertex, std::uint32_t patch) {
-    if (!is_free(source)) return append(vertex, patch);
+    if (!is_free(source)) return append(source, vertex, patch);
     const std::uint32_t copy = use(source, vertex);
     (*out_)[copy].patch = patch;
     return copy;
   }
 
  private:
-  std::uint32_t append(Vertex vertex, std::uint32_t patch) {
+  std::uint32_t append(std::uint32_t source, Vertex vertex, std::uint32_t patch) {
     vertex.patch = patch;
     out_->push_back(vertex);
+    sources_.push_back(source);
     return static_cast<std::uint32_t>(out_->size() - 1);
   }
 
   std::vector<Vertex>* out_;
   std::vector<std::uint32_t> first_copy_;  ///< by source
+  std::vector<std::uint32_t> sources_;
 };
 
 /// The corners that belong to every triangle of a patch (base/patch_layout.h).
@@ -73,6 +79,37 @@ void append_patch(VertexStream<Vertex>& stream, std::vector<std::uint32_t>& indi
   }
 }
 
+/// Notes which vertices were made for which moving part: a part's patches follow each other, and nobody else
+/// uses their sources.
+class PartLister {
+ public:
+  PartLister(const Scene& scene, IdMesh& mesh) : scene_(&scene), mesh_(&mesh) {
+    if (scene.motion) parts_ = scene.motion->parts;
+  }
+
+  void begin_patch(std::uint32_t patch) {
+    if (at_ == parts_.size() || patch != parts_[at_].mover.first_patch) return;
+    IdMeshPart& part = mesh_->parts.emplace_back();
+    part.cut = id_class(scene_->materials[scene_->patches[patch].material]) != IdClass::kOpaque;
+    part.first = static_cast<std::uint32_t>(part.cut ? mesh_->cut.size() : mesh_->solid.size());
+  }
+  void end_patch(std::uint32_t patch, const std::vector<std::uint32_t>& solid,
+                 const std::vector<std::uint32_t>& cut) {
+    if (at_ == parts_.size() || patch + 1 != parts_[at_].mover.end()) return;
+    IdMeshPart& part = mesh_->parts.back();
+    const std::uint32_t first = part.cut ? parts_[at_].vertices.first : parts_[at_].positions.first;
+    for (const std::uint32_t source : std::span(part.cut ? cut : solid).subspan(part.first))
+      part.sources.push_back(source - first);
+    ++at_;
+  }
+
+ private:
+  const Scene* scene_;
+  IdMesh* mesh_;
+  std::span<const MovingPart> parts_;
+  std::size_t at_ = 0;
+};
+
 }  // namespace
 
 IdMesh make_id_mesh(const Scene& scene) {
@@ -80,8 +117,10 @@ IdMesh make_id_mesh(const Scene& scene) {
   mesh.indices.reserve(scene.indices.size());
   VertexStream<IdVertex> solid(mesh.solid, scene.positions.size());
   VertexStream<CutVertex> cut(mesh.cut, scene.vertices.size());
+  PartLister parts(scene, mesh);
   for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
     const Patch& patch = scene.patches[i];
+    parts.begin_patch(i);
     if (id_class(scene.materials[patch.material]) == IdClass::kOpaque) {
       const auto source = [&](std::uint8_t corner) { return value(patch.positions[corner]); };
       const auto make = [&](std::uint8_t corner) { return IdVertex{scene.positions[source(corner)], kNone}; };
@@ -94,6 +133,7 @@ IdMesh make_id_mesh(const Scene& scene) {
       };
       append_patch(cut, mesh.indices, i, patch.triangles, source, make);
     }
+    parts.end_patch(i, solid.sources(), cut.sources());
   }
   return mesh;
 }

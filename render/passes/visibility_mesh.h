@@ -25,6 +25,13 @@ struct CutVertex {
 };
 static_assert(sizeof(CutVertex) == 24 && offsetof(CutVertex, uv) == 16);
 
+/// What a moving part has of an id mesh: a run of its vertices, and where each is from.
+struct IdMeshPart {
+  bool cut = false;                    ///< of IdMesh::cut, else of IdMesh::solid
+  std::uint32_t first = 0;             ///< of its vertices
+  std::vector<std::uint32_t> sources;  ///< by vertex: its position or vertex, counted within the part
+};
+
 /// A scene's triangles for the id pass, in the order of Scene::indices. The first vertex of a triangle tells
 /// its patch by flat interpolation, so no shader needs a primitive's number: software devices would take
 /// every triangle apart for it. Triangles are turned, and a few vertices doubled, so that no vertex must
@@ -33,6 +40,7 @@ struct IdMesh {
   std::vector<IdVertex> solid;         ///< of opaque patches, from Scene::positions
   std::vector<CutVertex> cut;          ///< of masked and blended ones, from Scene::vertices
   std::vector<std::uint32_t> indices;  ///< three a triangle, into `solid` or `cut` by its patch's material
+  std::vector<IdMeshPart> parts;       ///< by SceneMotion::parts
 };
 IdMesh make_id_mesh(const Scene& scene);
 

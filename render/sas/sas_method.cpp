@@ -4,6 +4,7 @@
 #include "render/gpu/barriers.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace atlaswire::render {
 namespace {
@@ -96,8 +97,10 @@ SasMethod::SasMethod(Device& device, std::shared_ptr<const Scene> scene, const M
 
 RenderedFrame SasMethod::render(const FrameRequest& request) {
   RenderedFrame frame{.frame = request.frame};
-  const Time start = steady_now();
+  const Time begin = steady_now();
   if (request.restart) planner_->restart();
+  scene_gpu_.pose(request.scene_seconds);
+  const Time start = steady_now();
   find_visible(request);
   const Time found = steady_now();
   const LayoutChange& change = planner_->finish(request.intra);
@@ -106,11 +109,13 @@ RenderedFrame SasMethod::render(const FrameRequest& request) {
   choose_stale(change);
   const Time placed = steady_now();
   const std::uint32_t slot = frames_ % settings_.frames_in_flight;
+  frame.timings.motion = start - begin;
   frame.timings.visibility = found - start - planner_->device_time();
   frame.timings.allocation = placed - found + planner_->device_time();
   frame.shaded_texels = shade(request, slot, frame.timings);
   frame.picture = conversion_.picture(slot);
   frame.change = &change;
+  frame.moved = &scene_gpu_.moved();
   frame.requests = planner_->requests();
   frame.layout = counts_of(change);
   frame.usage = planner_->allocator().usage();
@@ -123,6 +128,7 @@ RenderedFrame SasMethod::render(const FrameRequest& request) {
 
 void SasMethod::find_visible(const FrameRequest& request) {
   const auto& commands = context_.begin();
+  scene_gpu_.record_moves(commands);
   visibility_.record(commands, request.camera, viewpoints(request, settings_));
   planner_->record(commands, request.intra);
   context_.wait(context_.submit());
@@ -133,12 +139,28 @@ void SasMethod::choose_stale(const LayoutChange& change) {
   if (settings_.reshade_interval == 1) return;
   auto added = change.added.begin();
   auto moved = change.moved.begin();
+  const std::vector<Mover> movers = take_moved();
+  auto mover = movers.begin();
   std::erase_if(stale_, [&](const PlacedPatch& placed) {
     const bool is_new = advance_to(added, change.added.end(), placed.patch);
     const bool is_moved = advance_to(moved, change.moved.end(), placed.patch);
     const std::uint32_t turn = chunk_of_patch_[value(placed.patch)] + frames_;
-    return !is_new && !is_moved && turn % settings_.reshade_interval != 0;
+    while (mover != movers.end() && mover->end() <= value(placed.patch)) ++mover;
+    const bool moves = mover != movers.end() && mover->first_patch <= value(placed.patch);
+    return !is_new && !is_moved && !moves && turn % settings_.reshade_interval != 0;
   });
+}
+
+/// The runs of patches that moved since the last call.
+std::vector<Mover> SasMethod::take_moved() {
+  const MovedScene& moved = scene_gpu_.moved();
+  shaded_versions_.resize(moved.parts().size());
+  std::vector<Mover> movers;
+  for (std::size_t i = 0; i < shaded_versions_.size(); ++i) {
+    if (std::exchange(shaded_versions_[i], moved.version(i)) != moved.version(i))
+      movers.push_back(moved.parts()[i].mover);
+  }
+  return movers;
 }
 
 void SasMethod::clear_freed(const vk::raii::CommandBuffer& commands) {

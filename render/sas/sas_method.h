@@ -19,9 +19,9 @@ namespace atlaswire::render {
 /// I420. Each render() waits for its two submissions: one that ends with the levels' read-back, one that ends
 /// with the picture. Equal requests in equal order give equal bytes on one device.
 ///
-/// Blocks that are new or moved are shaded at once, the others every MethodSettings::reshade_interval-th
-/// frame, chunk by chunk in rotation. On intra frames texels that no patch holds any more are cleared to
-/// mid-grey of coverage 0 ([SAS] 4.2), and the allocator may reset.
+/// Blocks that are new or moved, and those of what moves in the scene, are shaded at once, the others every
+/// MethodSettings::reshade_interval-th frame, chunk by chunk in rotation. On intra frames texels that no
+/// patch holds any more are cleared to mid-grey of coverage 0 ([SAS] 4.2), and the allocator may reset.
 class SasMethod final : public Method {
  public:
   SasMethod(Device& device, std::shared_ptr<const Scene> scene, const MethodSettings& settings);
@@ -45,6 +45,7 @@ class SasMethod final : public Method {
  private:
   void find_visible(const FrameRequest& request);
   void choose_stale(const LayoutChange& change);
+  std::vector<Mover> take_moved();
   void clear_freed(const vk::raii::CommandBuffer& commands);
   std::uint64_t shade(const FrameRequest& request, std::uint32_t slot, RenderTimings& timings);
 
@@ -59,8 +60,9 @@ class SasMethod final : public Method {
   GpuTimer timer_;
   SubmitContext context_;
   std::vector<std::uint32_t> chunk_of_patch_;
-  std::vector<PlacedPatch> stale_;  ///< what this frame shades, ascending
-  std::uint32_t frames_ = 0;        ///< rendered so far; wraps
+  std::vector<PlacedPatch> stale_;              ///< what this frame shades, ascending
+  std::vector<std::uint64_t> shaded_versions_;  ///< by part of the scene that moves
+  std::uint32_t frames_ = 0;                    ///< rendered so far; wraps
 };
 
 }  // namespace atlaswire::render

@@ -63,6 +63,9 @@ RenderedFrame VideoMethod::render(const FrameRequest& request) {
   const Camera view = view_of(request.camera, settings_.fov_scale);
   const std::uint32_t slot = frames_++ % settings_.frames_in_flight;
   RenderedFrame frame{.frame = request.frame};
+  const Time start = steady_now();
+  scene_gpu_.pose(request.scene_seconds);
+  frame.timings.motion = steady_now() - start;
   draw(view, slot, frame.timings);
   frame.picture = conversion_.picture(slot);
   frame.shaded_texels = view.extent.area();
@@ -88,6 +91,7 @@ void VideoMethod::draw(const Camera& view, std::uint32_t slot, RenderTimings& ti
   const Time start = steady_now();
   const auto& commands = context_.begin();
   timer_.reset(commands);
+  scene_gpu_.record_moves(commands);
   forward_.record(commands, view, target_, depth_.has_value() ? Depth::kKept : Depth::kDropped);
   use_image(commands, target_.color, ImageUse::kSampledInCompute);
   timer_.begin(commands, "conversion");
