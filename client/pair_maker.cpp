@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <random>
 #include <utility>
 
 namespace atlaswire::client {
@@ -27,6 +28,13 @@ std::optional<LayoutMirror> mirror_for(const proto::StreamDescription& stream) {
   return std::optional<LayoutMirror>(std::in_place, *stream.memory, stream.atlas, stream.max_patches);
 }
 
+std::optional<MovingReplica> moving_for(const proto::StreamDescription& stream) {
+  if (!stream.motion) return std::nullopt;
+  std::random_device source;
+  return std::optional<MovingReplica>(std::in_place, *stream.motion, stream.grid,
+                                      std::uint64_t{source()} << 32U | source());
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> readable_meta_codecs() {
@@ -46,6 +54,7 @@ PairMaker::PairMaker(const proto::StreamDescription& stream, DecodeSettings sett
       mirror_(mirror_for(stream)),
       pairing_(kMaxWaitingPictures, kMaxWaitingUpdates),
       replica_(limits_of(stream)),
+      moving_(moving_for(stream)),
       mesher_(stream.grid) {}
 
 void PairMaker::on_frame(const proto::AssembledFrame& frame) {
@@ -79,7 +88,8 @@ void PairMaker::on_update(UpdateArrival arrived) {
   if (broken_) return;
   const FrameId frame = arrived.update.meta.frame;
   const Time start = settings_.clock();
-  Result<codec::MetaUpdate> update = read(arrived.update.meta.meta);
+  codec::MoverChange movers;
+  Result<codec::MetaUpdate> update = read(arrived.update.meta.meta, movers);
   if (!update) return lose_step(frame, update.error());
   if (update->frame != frame) {
     return break_with(fmt::format("meta update of frame {} came in the message of frame {}",
@@ -89,22 +99,24 @@ void PairMaker::on_update(UpdateArrival arrived) {
   out_of_step_ = false;
   if (++in_step_for_ >= kLongInStep) restarts_in_a_row_ = 0;
   const Duration decoding = settings_.clock() - start;
-  if (!pairing_.add_update(frame, {std::move(*update), std::move(arrived), decoding})) {
+  if (!pairing_.add_update(frame, {std::move(*update), std::move(movers), std::move(arrived), decoding})) {
     break_with(fmt::format("meta update {} came out of order", value(frame)));
   }
 }
 
-Result<codec::MetaUpdate> PairMaker::read(ByteView bytes) {
+Result<codec::MetaUpdate> PairMaker::read(ByteView bytes, codec::MoverChange& movers) {
   Result<codec::MetaUpdate> update = meta_->decode(bytes);
+  if (update && moving_) movers = moving_->watch(*update);
   if (!update || !update->cue) return update;
   if (!mirror_) return Error{codec::MetaError::kBadVersion, "the atlas's memory was not described"};
   return mirror_->place(std::move(*update));
 }
 
-/// Codecs that keep state can come back after an error, if the server tells all anew.
+/// Codecs that keep state can come back after an error, if the server tells all anew; so can motion.
 void PairMaker::lose_step(FrameId frame, const Error& why) {
   if (out_of_step_ && why.code == codec::MetaError::kOutOfStep) return;  // it is asked for already
-  const bool keeps_state = codec::keeps_state(static_cast<codec::MetaCodecKind>(stream_.meta_codec));
+  const bool keeps_state =
+      moving_ || codec::keeps_state(static_cast<codec::MetaCodecKind>(stream_.meta_codec));
   const std::string text = fmt::format("meta update {}: {}", value(frame), why.message());
   if (!keeps_state || out_of_step_ || restarts_in_a_row_ == kMostRestarts) return break_with(text);
   spdlog::warn("{}; asking for all anew", text);
@@ -125,14 +137,29 @@ std::optional<Pair> PairMaker::next_pair() {
       break_with(fmt::format("meta update {}: {}", value(step->frame), applied.error().message()));
       break;
     }
+    if (!move(step->update)) continue;
     if (step->picture) return make_pair(*step->picture, step->update, start);
   }
   return std::nullopt;
 }
 
+/// Brings what moves to the update's frame. False: it is not known where that is, so nothing is shown.
+bool PairMaker::move(const DecodedUpdate& update) {
+  const ByteBuffer& told = update.arrived.update.meta.motion;
+  if (!moving_) {
+    if (!told.empty()) break_with("the server tells motion of a stream in which nothing moves");
+    return told.empty();
+  }
+  if (motion_lost_ && !update.update.reset) return false;
+  const Result<void> moved = moving_->move(update.movers, told);
+  motion_lost_ = !moved;
+  if (!moved) lose_step(update.update.frame, moved.error());
+  return !motion_lost_;
+}
+
 Pair PairMaker::make_pair(const DecodedFrame& picture, const DecodedUpdate& update, Time start) {
   Pair pair;
-  mesher_.build(replica_, pair.mesh);
+  mesher_.build(replica_, moving_ ? &*moving_ : nullptr, pair.mesh);
   pair.origin = mesher_.origin();
   pair.picture = picture.picture;
   const ServerTimes& server = update.arrived.server;

@@ -2,6 +2,7 @@
 
 #include "client/arrival.h"
 #include "client/layout_mirror.h"
+#include "client/moving_replica.h"
 #include "client/pair.h"
 #include "client/pairing.h"
 #include "client/replica.h"
@@ -73,11 +74,13 @@ class PairMaker {
   };
   struct DecodedUpdate {
     codec::MetaUpdate update;
+    codec::MoverChange movers;  ///< before blocks are placed: who asks for one takes part
     UpdateArrival arrived;
     Duration decoding{};
   };
 
-  Result<codec::MetaUpdate> read(ByteView bytes);
+  Result<codec::MetaUpdate> read(ByteView bytes, codec::MoverChange& movers);
+  bool move(const DecodedUpdate& update);
   void lose_step(FrameId frame, const Error& why);
   Pair make_pair(const DecodedFrame& picture, const DecodedUpdate& update, Time start);
   void break_with(std::string why);
@@ -90,9 +93,11 @@ class PairMaker {
   std::optional<LayoutMirror> mirror_;  ///< where updates leave out where blocks lie
   Pairing<DecodedFrame, DecodedUpdate> pairing_;
   Replica replica_;
+  std::optional<MovingReplica> moving_;  ///< of a stream that moves
   ReplicaMesher mesher_;
   bool needs_idr_ = false;
   bool out_of_step_ = false;             ///< nothing is believed until an update with reset
+  bool motion_lost_ = false;             ///< nothing is shown until one was applied
   std::uint32_t restarts_in_a_row_ = 0;  ///< that did not keep us in step for long
   std::uint32_t in_step_for_ = 0;        ///< updates
   bool broken_ = false;

@@ -7,7 +7,7 @@ ReplicaMesher::ReplicaMesher(const PositionGrid& grid)
       half_(static_cast<double>(1U << (grid.bits - 1))),
       origin_(grid.origin + glm::dvec3(half_ * step_)) {}
 
-void ReplicaMesher::build(const Replica& replica, render::MeshData& mesh) {
+void ReplicaMesher::build(const Replica& replica, const MovingReplica* moving, render::MeshData& mesh) {
   const std::span<const GridPosition> grid_positions = replica.positions();
   patches_.clear();
   patches_.reserve(replica.patches().size());
@@ -20,6 +20,10 @@ void ReplicaMesher::build(const Replica& replica, render::MeshData& mesh) {
       const GridPosition& p = grid_positions[value(patch.corners[i])];
       out.positions[i] = glm::vec3((glm::dvec3(p) - half_) * step_);
     }
+    if (moving == nullptr) continue;
+    const std::size_t count = corner_count(patch.triangles);
+    moving->place(patch.id, grid_positions, std::span(patch.corners).first(count), origin_,
+                  std::span(out.positions).first(count));
   }
   render::build_mesh(patches_, mesh);
 }

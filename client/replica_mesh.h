@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/grid.h"
+#include "client/moving_replica.h"
 #include "client/replica.h"
 #include "render/display/mesh_builder.h"
 
@@ -17,7 +18,8 @@ class ReplicaMesher {
 
   /// What positions are relative to: the grid's centre, so that floats hold every grid point exactly.
   [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
-  void build(const Replica& replica, render::MeshData& mesh);
+  /// `moving`: where what moves is; null: nothing does.
+  void build(const Replica& replica, const MovingReplica* moving, render::MeshData& mesh);
 
  private:
   double step_;

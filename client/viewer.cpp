@@ -70,6 +70,7 @@ class Viewer {
     if (settings_.stereo) hello.eye_separation = settings_.ipd;
     hello.max_picture = {16'384, 16'384};
     hello.meta_codecs = readable_meta_codecs();
+    hello.shows_motion = true;
     hello.wanted_atlas = settings_.wanted_atlas;
     hello.wanted_bit_rate = settings_.wanted_bit_rate;
     hello.wanted_frame_rate = settings_.wanted_frame_rate;

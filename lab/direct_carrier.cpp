@@ -25,12 +25,16 @@ void DirectCarrier::advance(Duration now) {
 void DirectCarrier::carry(std::int64_t frame) {
   const Duration start = arrival_of(frame) - latency_;
   const FrameTiming timing{
-      .posed = start, .shown_from = arrival_of(frame), .shown_until = arrival_of(frame + 1)};
+      .posed = start, .made = start, .shown_from = arrival_of(frame), .shown_until = arrival_of(frame + 1)};
   server::EncodedFrame made = source_->make({}, motion_->at(start), timing, contender_->take_refresh());
   posed_.emplace(made.frame, start);
   client::UpdateArrival update;
-  update.update.octets = made.meta.size();
-  update.update.meta = {.frame = made.frame, .cover = made.cover, .meta = std::move(made.meta)};
+  update.update.octets = made.meta.size() + made.motion.size();
+  update.update.meta = {.frame = made.frame,
+                        .cover = made.cover,
+                        .meta = std::move(made.meta),
+                        .scene_time = made.scene_time,
+                        .motion = std::move(made.motion)};
   contender_->on_update(update);
   proto::AssembledFrame picture;
   picture.frame = made.frame;

@@ -36,6 +36,7 @@ server::ViewRequest FrameSource::request_for(const Pose& head, const FrameTiming
   request.camera = camera_;
   request.camera.pose = head;
   request.cover = timing.shown_until - timing.posed;
+  request.scene_time = timing.made;
   const Duration middle = (timing.shown_from + timing.shown_until) / 2;
   if (is_warp_) {
     if (settings_.predict) request.camera.pose = extrapolate(head, middle - timing.posed);
@@ -74,10 +75,12 @@ void FrameSource::count(const server::EncodedFrame& frame) {
   }
   if (frames_until_whole_ == frames_ && frame.report.waiting_patches != 0) ++frames_until_whole_;
   ++frames_;
-  largest_meta_bytes_ = std::max<std::uint64_t>(largest_meta_bytes_, frame.meta.size());
+  const std::uint64_t meta = frame.meta.size() + frame.motion.size();
+  largest_meta_bytes_ = std::max(largest_meta_bytes_, meta);
   video_bytes_ += frame.video.size();
-  meta_bytes_ += frame.meta.size();
-  if (budget_) budget_->on_frame(frame.meta.size());
+  meta_bytes_ += meta;
+  motion_bytes_ += frame.motion.size();
+  if (budget_) budget_->on_frame(meta);
   const server::FrameReport& report = frame.report;
   shaded_texels_ += report.shaded_texels;
   visible_patches_ += report.visible_patches;
@@ -87,6 +90,7 @@ void FrameSource::count(const server::EncodedFrame& frame) {
   refused_ += report.layout.refused;
   resets_ += report.layout.reset ? 1 : 0;
   used_share_ += static_cast<double>(report.usage.allocated) / static_cast<double>(settings_.atlas.area());
+  render_.motion += report.render.motion;
   render_.visibility += report.render.visibility;
   render_.allocation += report.render.allocation;
   render_.shading += report.render.shading;
@@ -101,6 +105,8 @@ void FrameSource::add_figures(Duration streamed, std::vector<Figure>& figures) c
   const auto of_atlas = [&](double value) { return is_warp_ ? kNotApplicable : value; };
   figures.push_back({"video_mbps", video});
   figures.push_back({"meta_mbps", mbps(meta_bytes_)});
+  const bool moves = contender_->description().motion.has_value();
+  figures.push_back({"motion_mbps", moves ? mbps(motion_bytes_) : kNotApplicable});
   figures.push_back({"total_mbps", video + mbps(meta_bytes_)});
   figures.push_back({"first_meta_kb", 1e-3 * static_cast<double>(first_meta_bytes_)});
   figures.push_back({"largest_meta_kb", 1e-3 * static_cast<double>(largest_meta_bytes_)});
@@ -129,6 +135,7 @@ void FrameSource::add_timings(std::vector<Figure>& timings) const {
   };
   add("server_frame_ms", making_.wall);
   add("server_cpu_ms", making_.cpu);
+  add("motion_ms", render_.motion);
   add("visibility_ms", render_.visibility);
   add("allocation_ms", render_.allocation);
   add("shading_ms", render_.shading);

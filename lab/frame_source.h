@@ -19,6 +19,7 @@ namespace atlaswire::lab {
 /// since the path's start.
 struct FrameTiming {
   Duration posed{};
+  Duration made{};  ///< when the server looks at the scene, which moves by the path's time
   Duration shown_from{};
   Duration shown_until{};
 };
@@ -57,6 +58,7 @@ class FrameSource {
   std::uint64_t frames_ = 0;
   std::uint64_t video_bytes_ = 0;
   std::uint64_t meta_bytes_ = 0;
+  std::uint64_t motion_bytes_ = 0;        ///< of it
   std::uint64_t largest_meta_bytes_ = 0;  ///< of one frame
   std::uint64_t first_meta_bytes_ = 0;
   server::FrameReport first_;             ///< the first frame's

@@ -50,6 +50,7 @@ client::SessionSettings client_settings(const PointSettings& settings) {
   s.hello.vertical_fov = display_camera(settings).vertical_fov;
   s.hello.max_picture = {16'384, 16'384};
   s.hello.meta_codecs = client::readable_meta_codecs();
+  s.hello.shows_motion = true;
   return s;
 }
 
@@ -122,10 +123,10 @@ void ServerEnd::make_frame(const proto::ReceivedPose& pose, Time now) {
   cover_.on_round_trip(session_.round_trip());
   const Duration posed = pose.received - zero_;
   const Duration until = now - zero_ + cover_.cover();
-  auto frame = std::make_shared<server::EncodedFrame>(
-      source_->make(pose.stamped.id, pose.stamped.pose,
-                    {.posed = posed, .shown_from = until - interval_, .shown_until = until},
-                    session_.take_refresh_request()));
+  auto frame = std::make_shared<server::EncodedFrame>(source_->make(
+      pose.stamped.id, pose.stamped.pose,
+      {.posed = posed, .made = now - zero_, .shown_from = until - interval_, .shown_until = until},
+      session_.take_refresh_request()));
   const Time ready = now + making_;
   frame->stamps = {.pose_received = pose.received,
                    .render_start = now,

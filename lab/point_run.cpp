@@ -94,7 +94,7 @@ class PointRun {
     render::Camera eye = camera_;
     eye.pose = motion_.at(now);
     if (settings_.stereo) eye.pose = render::eye_pose(eye.pose, -settings_.ipd / 2);
-    Displayed shown{.truth = truth_.picture(eye), .view = render::Picture(eye.extent, {0, 0, 0, 0})};
+    Displayed shown{.truth = truth_.picture(eye, now), .view = render::Picture(eye.extent, {0, 0, 0, 0})};
     if (on_display_) {
       const Work start = work_now();
       shown.view = contender_->draw(eye);

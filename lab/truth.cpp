@@ -114,26 +114,30 @@ Truth::Truth(render::Device& device, std::shared_ptr<const render::Scene> scene,
 }
 Truth::~Truth() = default;
 
-fs::path Truth::place_of(const render::Camera& camera) const {
+fs::path Truth::place_of(const render::Camera& camera, Duration time) const {
   const auto& [position, turn, velocity, spin] = camera.pose;
-  const std::string key = fmt::format(
-      "{}|{}|{}x{}|{:.17g}|{:.17g}|{:.17g},{:.17g},{:.17g}|{:.17g},{:.17g},{:.17g},{:.17g}", identity_,
-      render::to_string(lens_), camera.extent.width, camera.extent.height, camera.vertical_fov,
-      camera.near_plane, position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z);
+  const std::string moment = scene_->motion ? fmt::format("|{}", time.count()) : "";
+  const std::string key =
+      fmt::format("{}|{}|{}x{}|{:.17g}|{:.17g}|{:.17g},{:.17g},{:.17g}|{:.17g},{:.17g},{:.17g},{:.17g}",
+                  identity_, render::to_string(lens_), camera.extent.width, camera.extent.height,
+                  camera.vertical_fov, camera.near_plane, position.x, position.y, position.z, turn.w, turn.x,
+                  turn.y, turn.z) +
+      moment;
   return cache_ / fmt::format("{:016x}.zst", hash_of(key));
 }
 
-TruePicture Truth::picture(const render::Camera& camera) {
-  if (cache_.empty()) return rendered(camera);
-  const fs::path place = place_of(camera);
+TruePicture Truth::picture(const render::Camera& camera, Duration time) {
+  if (cache_.empty()) return rendered(camera, time);
+  const fs::path place = place_of(camera, time);
   if (auto kept = read_packed(place, camera.extent)) return std::move(*kept);
-  TruePicture truth = rendered(camera);
+  TruePicture truth = rendered(camera, time);
   write_packed(place, truth);
   return truth;
 }
 
-TruePicture Truth::rendered(const render::Camera& camera) {
+TruePicture Truth::rendered(const render::Camera& camera, Duration time) {
   if (parts_ == nullptr) parts_ = std::make_unique<Parts>(*device_, scene_, lens_);
+  parts_->scene.move_to(to_seconds(time));
   TruePicture truth{.picture = parts_->forward.render(camera)};
   truth.forward_fragments = parts_->forward.fragments();
   truth.deferred_fragments = drawn_pixels(truth.picture);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/time.h"
 #include "render/camera.h"
 #include "render/gpu/open_device.h"
 #include "render/image/lens_correction.h"
@@ -31,12 +32,14 @@ class Truth {
         std::filesystem::path cache, const render::LensCorrection& lens = {});
   ~Truth();
 
-  TruePicture picture(const render::Camera& camera);
+  /// Of a scene that moves, as it is at `time` since the path's start: what a viewer with no latency at all
+  /// would see.
+  TruePicture picture(const render::Camera& camera, Duration time);
 
  private:
   struct Parts;
-  TruePicture rendered(const render::Camera& camera);
-  [[nodiscard]] std::filesystem::path place_of(const render::Camera& camera) const;
+  TruePicture rendered(const render::Camera& camera, Duration time);
+  [[nodiscard]] std::filesystem::path place_of(const render::Camera& camera, Duration time) const;
 
   render::Device* device_;
   std::shared_ptr<const render::Scene> scene_;

@@ -1,9 +1,12 @@
 #include "proto/envelope.h"
 
 #include "base/emphasis.h"
+#include "base/mover.h"
 #include "proto/datagram.h"
 #include "proto/framing.h"
 #include "proto/plain_text.h"
+
+#include <algorithm>
 
 namespace atlaswire::proto {
 
@@ -63,6 +66,27 @@ Result<void> check(const wire::ClientHello& m) {
   return rules.result();
 }
 
+void check(const wire::SceneMotion& m, const wire::StreamInfo& stream, Rules& rules) {
+  const int movers = m.gaps_size();
+  rules.require(movers >= 1 && static_cast<std::uint32_t>(movers) <= kMostMovers, "stream.motion.gaps");
+  rules.require(m.counts_size() == movers, "stream.motion.counts");
+  rules.require(m.kinds_size() == movers, "stream.motion.kinds");
+  const int objects = m.pivots_size() / 3;
+  rules.require(m.pivots_size() % 3 == 0 && objects <= movers, "stream.motion.pivots");
+  if (rules.result().has_error()) return;
+  std::uint64_t end = 0;
+  for (int i = 0; i < movers; ++i) {
+    rules.require(m.counts(i) >= 1, "stream.motion.counts");
+    end += std::uint64_t{m.gaps(i)} + m.counts(i);
+    rules.require(m.kinds(i) <= static_cast<std::uint32_t>(objects), "stream.motion.kinds");
+  }
+  rules.require(end <= stream.max_patches(), "stream.motion.gaps");
+  for (const std::uint32_t coordinate : m.pivots())
+    rules.require(coordinate < 1U << std::min(stream.grid_bits(), 20U), "stream.motion.pivots");
+  rules.require(m.translation_step() > 0 && m.translation_step() <= 1e6, "stream.motion.translation_step");
+  rules.require(m.rotation_bits() >= 8 && m.rotation_bits() <= 20, "stream.motion.rotation_bits");
+}
+
 Result<void> check(const wire::StreamInfo& m) {
   Rules rules;
   rules.require(is_text(m.scene(), 256), "stream.scene");
@@ -96,6 +120,7 @@ Result<void> check(const wire::StreamInfo& m) {
   for (const float c : {m.background_red(), m.background_green(), m.background_blue()}) {
     rules.require(in_range(c, 0, 65504), "stream.background");
   }
+  if (m.has_motion()) check(m.motion(), m, rules);
   return rules.result();
 }
 
@@ -116,6 +141,7 @@ Result<void> check(const wire::FrameMeta& m) {
     rules.require(is_wire_time(stamp), "frame_meta.stamps");
   }
   rules.require(m.cover() >= 0 && m.cover() <= 10 * kSecond, "frame_meta.cover");
+  rules.require(is_wire_time(m.scene_time()), "frame_meta.scene_time");
   return rules.result();
 }
 

@@ -60,6 +60,8 @@ Result<void> check_answer(const ClientHello& hello, const ServerHello& answer) {
   }
   const auto codec = choose_meta_codec({&answer.stream.meta_codec, 1}, hello.meta_codecs);
   if (codec.has_error()) return codec.error();
+  if (answer.stream.motion && !hello.shows_motion)
+    return Error(WireError::kBadValue, "the stream moves, which was not offered");
   return check_fits(answer.stream.picture, hello.max_picture);
 }
 

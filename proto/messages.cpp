@@ -27,6 +27,7 @@ ClientHello from_wire(const wire::ClientHello& m) {
   out.eye_separation = m.eye_separation();
   out.max_picture = from_wire(m.max_atlas());
   out.meta_codecs.assign(m.meta_codecs().begin(), m.meta_codecs().end());
+  out.shows_motion = m.shows_motion();
   if (m.has_wanted_atlas()) out.wanted_atlas = from_wire(m.wanted_atlas());
   if (m.has_wanted_bit_rate()) out.wanted_bit_rate = BitRate{m.wanted_bit_rate()};
   if (m.has_wanted_frame_rate()) out.wanted_frame_rate = m.wanted_frame_rate();
@@ -43,9 +44,43 @@ void to_wire(const ClientHello& m, wire::Envelope& envelope) {
   out.set_eye_separation(m.eye_separation);
   to_wire(m.max_picture, *out.mutable_max_atlas());
   for (const auto codec : m.meta_codecs) out.add_meta_codecs(codec);
+  out.set_shows_motion(m.shows_motion);
   if (m.wanted_atlas) to_wire(*m.wanted_atlas, *out.mutable_wanted_atlas());
   if (m.wanted_bit_rate) out.set_wanted_bit_rate(m.wanted_bit_rate->bits_per_second);
   if (m.wanted_frame_rate) out.set_wanted_frame_rate(*m.wanted_frame_rate);
+}
+
+MotionDescription from_wire(const wire::SceneMotion& m) {
+  MotionDescription out;
+  std::uint32_t patch = 0;
+  for (int i = 0; i < m.gaps_size(); ++i) {
+    Mover& mover = out.movers.emplace_back();
+    mover.first_patch = patch + m.gaps(i);
+    mover.patch_count = m.counts(i);
+    mover.deforms = m.kinds(i) == 0;
+    mover.object = mover.deforms ? 0 : m.kinds(i) - 1;
+    patch = mover.end();
+  }
+  for (int i = 0; i + 2 < m.pivots_size(); i += 3)
+    out.pivots.emplace_back(m.pivots(i), m.pivots(i + 1), m.pivots(i + 2));
+  out.translation_step = m.translation_step();
+  out.rotation_bits = m.rotation_bits();
+  return out;
+}
+
+void to_wire(const MotionDescription& m, wire::SceneMotion& out) {
+  std::uint32_t patch = 0;
+  for (const Mover& mover : m.movers) {
+    out.add_gaps(mover.first_patch - patch);
+    out.add_counts(mover.patch_count);
+    out.add_kinds(mover.deforms ? 0 : 1 + mover.object);
+    patch = mover.end();
+  }
+  for (const GridPosition& pivot : m.pivots) {
+    for (int axis = 0; axis < 3; ++axis) out.add_pivots(pivot[axis]);
+  }
+  out.set_translation_step(m.translation_step);
+  out.set_rotation_bits(m.rotation_bits);
 }
 
 StreamDescription from_wire(const wire::StreamInfo& m) {
@@ -71,6 +106,7 @@ StreamDescription from_wire(const wire::StreamInfo& m) {
   out.alpha_mask = m.alpha_mask();
   out.alpha_blend = m.alpha_blend();
   out.double_sided = m.double_sided();
+  if (m.has_motion()) out.motion = from_wire(m.motion());
   return out;
 }
 
@@ -102,6 +138,7 @@ void to_wire(const StreamDescription& m, wire::StreamInfo& out) {
   out.set_alpha_mask(m.alpha_mask);
   out.set_alpha_blend(m.alpha_blend);
   out.set_double_sided(m.double_sided);
+  if (m.motion) to_wire(*m.motion, *out.mutable_motion());
 }
 
 ServerHello from_wire(const wire::ServerHello& m) {
@@ -131,6 +168,9 @@ FrameMeta from_wire(const wire::FrameMeta& m) {
   out.cover = Duration{m.cover()};
   const auto bytes = std::as_bytes(std::span(m.meta()));
   out.meta.assign(bytes.begin(), bytes.end());
+  out.scene_time = Duration{m.scene_time()};
+  const auto motion = std::as_bytes(std::span(m.motion()));
+  out.motion.assign(motion.begin(), motion.end());
   return out;
 }
 
@@ -145,6 +185,8 @@ void to_wire(const FrameMeta& m, wire::Envelope& envelope) {
   out.set_sent(to_nanos(m.stamps.sent));
   out.set_cover(m.cover.count());
   out.set_meta(m.meta.data(), m.meta.size());
+  out.set_scene_time(m.scene_time.count());
+  if (!m.motion.empty()) out.set_motion(m.motion.data(), m.motion.size());
 }
 
 Refusal from_wire(const wire::Refusal& m) { return {static_cast<Refusal::Code>(m.code()), m.text()}; }

@@ -32,6 +32,7 @@ struct ClientHello {
   double eye_separation = 0;           ///< metres, 0..1; above 0 two such displays are drawn, one an eye
   Extent2D max_picture{4096, 4096};    ///< largest decodable picture, sides 64..16384
   std::vector<std::uint32_t> meta_codecs{1};  ///< codec::MetaCodecKind numbers, 1..16 of them
+  bool shows_motion = false;                  ///< else the client is sent moving scenes at rest
   /// Wishes; the server may give something else.
   std::optional<Extent2D> wanted_atlas;     ///< sides 64..16384
   std::optional<BitRate> wanted_bit_rate;   ///< 1 kbit/s..10 Gbit/s
@@ -60,8 +61,10 @@ struct FrameMeta {
   FrameId frame{};
   PoseId pose{};  ///< of this client; 0: none had arrived
   StageStamps stamps;
-  Duration cover{};  ///< how far ahead the visible set reaches; 0..10 s
-  ByteBuffer meta;   ///< bytes of the agreed meta codec, may be empty
+  Duration cover{};       ///< how far ahead the visible set reaches; 0..10 s
+  ByteBuffer meta;        ///< bytes of the agreed meta codec, may be empty
+  Duration scene_time{};  ///< for how long what moves had been moving; only if the stream has motion
+  ByteBuffer motion;      ///< codec::MotionEncoder's message; only if the stream has motion
 };
 
 /// Server to client instead of a ServerHello; the connection closes after it.

@@ -1,12 +1,14 @@
 #pragma once
 
 #include "base/grid.h"
+#include "base/mover.h"
 #include "base/units.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace atlaswire::proto {
 
@@ -16,6 +18,15 @@ struct AtlasMemory {
   std::uint32_t min_block_log2 = 1;   ///< side of the smallest block; not above the superblock's
   double high_water = 0.95;           ///< share of texels in use, 0..1
   bool operator==(const AtlasMemory&) const = default;
+};
+
+/// What moves in a stream's scene, and how finely that is told. docs/PROTOCOL.md, "Motion in a stream".
+struct MotionDescription {
+  std::vector<Mover> movers;         ///< 1..kMostMovers, within the stream's patches
+  std::vector<GridPosition> pivots;  ///< by object: what it turns about; at most one a mover
+  double translation_step = 1e-3;    ///< metres, > 0, at most 1e6
+  std::uint32_t rotation_bits = 14;  ///< 8..20
+  bool operator==(const MotionDescription&) const = default;
 };
 
 /// What a client must know of a stream before its first frame; StreamInfo on the wire.
@@ -38,6 +49,7 @@ struct StreamDescription {
   bool alpha_mask = false;
   bool alpha_blend = false;
   bool double_sided = false;
+  std::optional<MotionDescription> motion;  ///< nullopt: nothing moves, and no frame tells motion
 };
 
 }  // namespace atlaswire::proto

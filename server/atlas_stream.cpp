@@ -40,6 +40,7 @@ AtlasStream::AtlasStream(const StreamSettings& settings, std::shared_ptr<const r
       limits_(tracker_.limits(settings.render.atlas)),
       meta_codec_(preferred_meta_codec_),
       meta_(codec::make_meta_encoder(meta_codec_, limits_)) {
+  if (tracker_.scene()->motion) motion_.emplace(tracker_.scene(), tracker_.grid());
   const render::AllocatorSettings& allocator = settings.render.allocator;
   if (layout_colours_) layout_.emplace(settings.render.atlas, allocator.superblock_log2);
 }
@@ -62,7 +63,11 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
                                        .cover = request.cover,
                                        .intra = prepared.intra,
                                        .restart = restart,
+                                       .scene_seconds = seconds_of(request.scene_time),
                                        .hints = request.hints});
+  prepared.scene_time = request.scene_time;
+  if (motion_ && request.scene_time && prepared.rendered.moved != nullptr)
+    prepared.moved = motion_->look(*prepared.rendered.moved);
   if (layout_) {
     layout_->observe(*prepared.rendered.change);
     if (request.layout) prepared.layout = layout_->picture(*layout_colours_);
@@ -71,6 +76,7 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
   if (restart) prepared.meta_codec = told_as_;
   prepared.rendered.change = nullptr;
   prepared.rendered.requests = {};
+  prepared.rendered.moved = nullptr;
   next_frame_ = next(next_frame_);
   return prepared;
 }
@@ -118,8 +124,12 @@ Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
   frame.meta.reserve(last_meta_bytes_ + last_meta_bytes_ / 4);
   meta_->encode(prepared.update, frame.meta);
   last_meta_bytes_ = frame.meta.size();
+  if (prepared.moved) {
+    frame.scene_time = *prepared.scene_time;
+    if (auto told = motion_->tell(prepared.update, *prepared.moved, frame.motion); !told) return told.error();
+  }
   constexpr std::size_t kRest = 1024;  // of the envelope
-  if (frame.meta.size() > proto::kMaxEnvelope - kRest) return too_large();
+  if (frame.meta.size() + frame.motion.size() > proto::kMaxEnvelope - kRest) return too_large();
   frame.stamps = prepared.stamps;
   FrameReport& report = frame.report;
   report.render = prepared.rendered.timings;
@@ -157,6 +167,7 @@ proto::StreamDescription describe(const render::Scene& scene, const AtlasStream&
   d.alpha_mask = scene.requirements.alpha_mask;
   d.alpha_blend = scene.requirements.alpha_blend;
   d.double_sided = scene.requirements.double_sided;
+  d.motion = stream.motion();
   return d;
 }
 

@@ -4,6 +4,7 @@
 #include "render/atlas/usage_overlay.h"
 #include "server/encoded_frame.h"
 #include "server/intra_schedule.h"
+#include "server/motion_teller.h"
 #include "server/replica_tracker.h"
 #include "server/settings.h"
 
@@ -31,6 +32,10 @@ class AtlasStream final : public FrameMaker {
   /// For clients that derive where blocks lie; nullopt: the method's layout cannot be derived.
   [[nodiscard]] std::optional<render::AllocatorSettings> memory() const { return method_->memory(); }
   [[nodiscard]] const PositionGrid& grid() const { return tracker_.grid(); }
+  /// For clients that show motion; nullopt: nothing moves.
+  [[nodiscard]] std::optional<proto::MotionDescription> motion() const {
+    return motion_ ? std::optional(motion_->description()) : std::nullopt;
+  }
   /// SPS and PPS, Annex B; empty before the first frame. Encoding thread.
   [[nodiscard]] const ByteBuffer& parameter_sets() const { return video_.parameter_sets(); }
   /// The encoder that opened.
@@ -49,6 +54,7 @@ class AtlasStream final : public FrameMaker {
   codec::MetaCodecKind told_as_{};  ///< since they were
   const std::optional<render::LayoutColours> layout_colours_;
   std::optional<render::UsageOverlay> layout_;  ///< with layout_colours_
+  std::optional<MotionTeller> motion_;          ///< of a scene that moves; tells on the encoding thread
   // Encoding thread.
   codec::VideoEncoder video_;
   codec::MetaLimits limits_;

@@ -8,6 +8,7 @@
 #include "proto/messages.h"
 #include "render/image/picture.h"
 #include "render/method.h"
+#include "server/motion_teller.h"
 
 #include <cstdint>
 #include <memory>
@@ -27,8 +28,16 @@ struct ViewRequest {
   std::optional<codec::MetaCodecKind> meta_codec;  ///< from a `restart` on; nullopt: the settings'
   std::optional<BitRate> bit_rate;                 ///< from this frame on
   std::optional<Emphasis> emphasis;                ///< from this frame on: Method::set_emphasis
+  /// For how long what moves has been moving; nullopt: everything is to be shown at rest, and no motion told.
+  /// Between two restarts always or never.
+  std::optional<Duration> scene_time;
   render::ViewHints hints;
 };
+
+/// ViewRequest::scene_time as a method takes it.
+inline std::optional<double> seconds_of(const std::optional<Duration>& scene_time) {
+  return scene_time ? std::optional(to_seconds(*scene_time)) : std::nullopt;
+}
 
 /// A frame between rendering and encoding. `rendered.picture` borrows from the method's ring.
 struct PreparedFrame {
@@ -37,6 +46,8 @@ struct PreparedFrame {
   bool intra = false;
   render::RenderedFrame rendered;  ///< without `change` and `requests`: `update` has them
   codec::MetaUpdate update;
+  std::optional<Duration> scene_time;
+  std::optional<MovedFrame> moved;                 ///< if the scene has motion, and it is to be told
   std::optional<codec::MetaCodecKind> meta_codec;  ///< from this update on
   std::optional<BitRate> bit_rate;
   std::optional<render::Picture> layout;  ///< ViewRequest::layout, where the stream follows its layout
@@ -66,8 +77,10 @@ struct EncodedFrame {
   PoseId pose{};  ///< 0 for a session whose pose it is not
   Duration cover{};
   bool idr = false;
-  ByteBuffer video;  ///< Annex B access unit
-  ByteBuffer meta;   ///< of the stream's meta codec
+  ByteBuffer video;       ///< Annex B access unit
+  ByteBuffer meta;        ///< of the stream's meta codec
+  Duration scene_time{};  ///< ViewRequest::scene_time
+  ByteBuffer motion;      ///< where what moves is, behind `meta`; empty: none is told
   proto::StageStamps stamps;
   FrameReport report;
 };

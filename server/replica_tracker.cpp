@@ -1,8 +1,13 @@
 #include "server/replica_tracker.h"
 
 #include "base/assert.h"
+#include "render/scene/scene_motion.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <unordered_set>
+#include <utility>
 
 namespace atlaswire::server {
 
@@ -12,8 +17,62 @@ PositionGrid scene_grid(const render::Scene& scene, std::uint32_t bits) {
   return PositionGrid::over(low, high, bits == 0 ? PositionGrid::suited_bits(low, high) : bits);
 }
 
+namespace {
+
+std::uint64_t key_of(const GridPosition& p) {
+  return std::uint64_t{p.x} | std::uint64_t{p.y} << 20U | std::uint64_t{p.z} << 40U;
+}
+
+/// The nearest grid point that is not in `taken`, in shells of growing cubes.
+GridPosition nearest_free(const GridPosition& at, const std::unordered_set<std::uint64_t>& taken,
+                          std::uint32_t bits) {
+  const std::int64_t side = std::int64_t{1} << bits;
+  for (std::int64_t reach = 1; reach < side; ++reach) {
+    for (std::int64_t z = -reach; z <= reach; ++z) {
+      for (std::int64_t y = -reach; y <= reach; ++y) {
+        const bool inner = std::abs(z) < reach && std::abs(y) < reach;
+        for (std::int64_t x = -reach; x <= reach; x += inner ? 2 * reach : 1) {
+          const std::array<std::int64_t, 3> p{at.x + x, at.y + y, at.z + z};
+          if (std::ranges::any_of(p, [side](std::int64_t c) { return c < 0 || c >= side; })) continue;
+          const GridPosition found{p[0], p[1], p[2]};
+          if (!taken.contains(key_of(found))) return found;
+        }
+      }
+    }
+  }
+  return at;
+}
+
+std::map<std::uint32_t, GridPosition> nudge_apart(const render::Scene& scene, const PositionGrid& grid) {
+  std::map<std::uint32_t, GridPosition> nudged;
+  if (!scene.motion) return nudged;
+  std::unordered_set<std::uint64_t> taken;
+  for (const render::MovingPart& part : scene.motion->parts) {
+    if (!part.mover.deforms) continue;
+    taken.clear();
+    std::vector<std::uint32_t> later;
+    const auto place = [&](std::uint32_t p) {
+      return grid.quantize(scene.origin + glm::dvec3(scene.positions[p]));
+    };
+    for (std::uint32_t p = part.positions.first; p < part.positions.end(); ++p) {
+      if (!taken.insert(key_of(place(p))).second) later.push_back(p);
+    }
+    for (const std::uint32_t p : later) {
+      const GridPosition found = nearest_free(place(p), taken, grid.bits);
+      taken.insert(key_of(found));
+      nudged.emplace(p, found);
+    }
+  }
+  return nudged;
+}
+
+}  // namespace
+
 ReplicaTracker::ReplicaTracker(std::shared_ptr<const render::Scene> scene, std::uint32_t grid_bits)
-    : scene_(std::move(scene)), grid_(scene_grid(*scene_, grid_bits)), known_(scene_->positions.size()) {}
+    : scene_(std::move(scene)),
+      grid_(scene_grid(*scene_, grid_bits)),
+      nudged_(nudge_apart(*scene_, grid_)),
+      known_(scene_->positions.size()) {}
 
 codec::MetaLimits ReplicaTracker::limits(const Extent2D& atlas) const {
   codec::MetaLimits limits;
@@ -125,7 +184,9 @@ void ReplicaTracker::add_vertices(codec::MetaUpdate& update) {
   update.vertices.reserve(new_ones_.size());
   for (const std::uint32_t vertex : new_ones_) {
     const glm::dvec3 position = scene_->origin + glm::dvec3(scene_->positions[vertex]);
-    update.vertices.push_back({static_cast<VertexId>(vertex), grid_.quantize(position)});
+    const auto nudged = nudged_.find(vertex);
+    update.vertices.push_back(
+        {static_cast<VertexId>(vertex), nudged == nudged_.end() ? grid_.quantize(position) : nudged->second});
   }
   new_ones_.clear();
 }

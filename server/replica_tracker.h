@@ -5,6 +5,7 @@
 #include "render/atlas/layout_hash.h"
 #include "render/scene/scene.h"
 
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,7 +13,9 @@
 namespace atlaswire::server {
 
 /// Knows what the clients of a stream know, and turns each frame's layout change into the update that keeps
-/// them level: vertices once, when a patch first needs them; patches added, moved and removed.
+/// them level: vertices once, when a patch first needs them; patches added, moved and removed. A grid point
+/// is a vertex's identity, so of points that one mover moves apart and that rest at one grid point all but
+/// the first are told at the nearest free one.
 class ReplicaTracker {
  public:
   ReplicaTracker(std::shared_ptr<const render::Scene> scene, std::uint32_t grid_bits);
@@ -34,6 +37,7 @@ class ReplicaTracker {
   codec::MetaUpdate update(FrameId frame, const Asked& asked);
   codec::MetaUpdate restart(FrameId frame, const Asked& asked);
 
+  [[nodiscard]] const std::shared_ptr<const render::Scene>& scene() const { return scene_; }
   [[nodiscard]] const PositionGrid& grid() const { return grid_; }
   /// What decoders must be prepared for.
   [[nodiscard]] codec::MetaLimits limits(const Extent2D& atlas) const;
@@ -46,10 +50,11 @@ class ReplicaTracker {
 
   std::shared_ptr<const render::Scene> scene_;
   PositionGrid grid_;
-  std::vector<bool> known_;                  ///< by VertexId
-  std::vector<std::uint32_t> new_ones_;      ///< of the update being made
-  std::vector<render::BlockRequest> asked_;  ///< as clients know it, ascending
-  render::LayoutHash layout_;                ///< as clients that derive it must have it
+  std::map<std::uint32_t, GridPosition> nudged_;  ///< by VertexId, the few that are told elsewhere
+  std::vector<bool> known_;                       ///< by VertexId
+  std::vector<std::uint32_t> new_ones_;           ///< of the update being made
+  std::vector<render::BlockRequest> asked_;       ///< as clients know it, ascending
+  render::LayoutHash layout_;                     ///< as clients that derive it must have it
 };
 
 /// The grid that clients of a scene share: over its bounding box, in scene coordinates.

@@ -145,6 +145,7 @@ void Session::accept(proto::StreamDescription stream, Time now) {
   stream.meta_codec = terms->meta_codec;
   meta_codec_ = static_cast<codec::MetaCodecKind>(terms->meta_codec);
   if (!leaves_positions(meta_codec_)) stream.memory.reset();
+  if (!hello_.shows_motion) stream.motion.reset();
   stream.ssrc = keys_.ssrc;
   reader_.set_limit(proto::kMaxEnvelope);
   reliable_.push(proto::ServerHello{terms->version, keys_.id, keys_.token, std::move(stream)}, now);
@@ -180,7 +181,8 @@ void Session::finish(const std::string& reason, Time /*now*/) {
 
 void Session::deliver(const FramePtr& frame, Time now) {
   if (state_ != SessionState::kStreaming) return;
-  proto::FrameMeta meta{frame->frame, frame->pose, frame->stamps, frame->cover, frame->meta};
+  proto::FrameMeta meta{frame->frame, frame->pose,       frame->stamps, frame->cover,
+                        frame->meta,  frame->scene_time, frame->motion};
   meta.stamps.sent = now;
   reliable_.push(meta, now);
   if (!media_.send(frame, now)) {
@@ -189,7 +191,7 @@ void Session::deliver(const FramePtr& frame, Time now) {
   }
   ++counts_.frames;
   counts_.video_bytes += frame->video.size();
-  counts_.meta_bytes += frame->meta.size();
+  counts_.meta_bytes += frame->meta.size() + frame->motion.size();
 }
 
 void Session::poll(Time now) {

@@ -128,14 +128,22 @@ ViewRequest StreamRunner::make_request() {
   return request;
 }
 
+/// Things move by the stream's own clock, from its first frame on.
+std::optional<Duration> StreamRunner::scene_time(Time now) {
+  if (!settings_.shows_motion) return std::nullopt;
+  if (!first_start_) first_start_ = now;
+  return now - *first_start_;
+}
+
 void StreamRunner::render_loop(const std::stop_token& stop) {
   try {
     maker_ = callbacks_.make();
     const Duration interval = interval_of(settings_.max_fps);
     Time earliest{};
     while (wait_for_turn(stop, earliest)) {
-      const ViewRequest request = make_request();
+      ViewRequest request = make_request();
       const Time start = steady_now();
+      request.scene_time = scene_time(start);
       // Late by less than an interval: keep the rhythm; by more: start a new one.
       earliest = start - earliest < interval ? earliest + interval : start + interval;
       PreparedFrame prepared = maker_->render(request);

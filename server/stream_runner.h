@@ -26,6 +26,7 @@ class StreamRunner {
  public:
   struct Settings {
     double max_fps = 15;
+    bool shows_motion = false;  ///< the client does; its scene moves from the first frame on
     CoverSettings cover;
     render::Camera camera;            ///< its pose is replaced by the client's
     double eye_separation = 0;        ///< metres; above 0 the client's two eyes are beside the pose
@@ -80,6 +81,7 @@ class StreamRunner {
   void encode_loop();
   bool wait_for_turn(const std::stop_token& stop, Time earliest);
   ViewRequest make_request();
+  [[nodiscard]] std::optional<Duration> scene_time(Time now);
   void encode_one(PreparedFrame prepared);
   void fail(const std::string& reason);
 
@@ -103,6 +105,7 @@ class StreamRunner {
   CoverEstimator cover_;
   RateFitter rate_;
   std::optional<Time> last_start_;
+  std::optional<Time> first_start_;  ///< rendering thread
 
   // The renderer first: should the second thread not start, the first one ends on its stop token.
   std::jthread renderer_;

@@ -1,11 +1,16 @@
 #include "client/decode_thread.h"
 
+#include "codec/motion.h"
 #include "tests/client/synthetic_pair.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace atlaswire::client {
 namespace {
@@ -21,12 +26,14 @@ struct DecodeThreadTest : ::testing::Test {
   int idrs_wanted = 0;
   std::string broken;
   std::vector<FrameId> restarts;
+  std::optional<proto::MotionDescription> motion;
 
   DecodeCounts run(std::vector<Arrival> input) {
     for (Arrival& a : input) EXPECT_TRUE(arrivals.try_push(std::move(a)));
     arrivals.close();
     proto::StreamDescription stream = square_stream();
     stream.meta_codec = static_cast<std::uint32_t>(server.meta_codec());
+    stream.motion = motion;
     DecodeThread decoder(stream, {}, arrivals, pairs,
                          {.decode_failed = [this] { ++idrs_wanted; },
                           .peer_broke = [this](std::string why) { broken = std::move(why); },
@@ -65,6 +72,93 @@ TEST_F(DecodeThreadTest, HandsOverTheNewestPair) {
   EXPECT_NEAR(pair->picture->view().y[0], 120, 3);
   EXPECT_GE(pair->times.ready, pair->times.video_arrival);
   EXPECT_EQ(broken, "");
+}
+
+/// The square as a rigid object that goes up a metre a frame; its messages begin anew at frame 0 and at
+/// `restart`.
+struct MovingSquare {
+  explicit MovingSquare(std::uint32_t restart = 0)
+      : description{.movers = {{0, 1, false, 0}},
+                    .pivots = {{0, 0, 0}},
+                    .translation_step = square_stream().grid.step} {
+    codec::MotionEncoder encoder(
+        {square_stream().grid, {.step = description.translation_step, .rotation_bits = 14}});
+    const std::uint32_t object = 0;
+    for (std::uint32_t n = 0; n < 5; ++n) {
+      const codec::RigidTransform up{.translation = {0, n, 0}};
+      encoder
+          .encode({nullptr, {}, std::span(&object, 1)},
+                  {.reset = n == 0 || n == restart, .transforms = std::span(&up, 1)}, messages.emplace_back())
+          .value();
+    }
+  }
+  [[nodiscard]] Arrival with_motion(Arrival arrival, std::uint32_t n) const {
+    arrival.update->update.meta.motion = messages[n];
+    return arrival;
+  }
+  proto::MotionDescription description;
+  std::vector<ByteBuffer> messages;
+};
+
+double highest(const Pair& pair) {
+  double y = -1e9;
+  for (const auto& vertex : pair.mesh.vertices) y = std::max<double>(y, vertex.position.y + pair.origin.y);
+  return y;
+}
+
+TEST_F(DecodeThreadTest, ShowsEachPictureWithWhatMovesWhereItWasThen) {
+  MovingSquare square;
+  motion = square.description;
+  run(list(square.with_motion(server.update(0, true), 0), server.picture(0, 90, true),
+           server.picture(1, 90, false), square.with_motion(server.update(1, false), 1),
+           // The picture of 2 is lost: its motion counts all the same. That of 4 is not there yet.
+           square.with_motion(server.update(2, false), 2), square.with_motion(server.update(3, false), 3),
+           server.picture(3, 90, false), square.with_motion(server.update(4, false), 4)));
+  EXPECT_EQ(broken, "");
+  EXPECT_TRUE(restarts.empty());
+  const auto pair = pairs.take();
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->times.frame, FrameId{3});
+  EXPECT_NEAR(highest(*pair), 1 + 3, 2 * square_stream().grid.max_error());
+}
+
+TEST_F(DecodeThreadTest, LostMotionIsNotShownAndAskedForOnce) {
+  MovingSquare square;
+  motion = square.description;
+  std::vector<Arrival> input =
+      list(square.with_motion(server.update(0, true), 0), server.picture(0, 90, true),
+           square.with_motion(server.update(1, false), 1), server.picture(1, 90, false),
+           square.with_motion(server.update(2, false), 2), server.picture(2, 90, false));
+  input[2].update->update.meta.motion.pop_back();
+  const DecodeCounts c = run(std::move(input));
+  EXPECT_EQ(broken, "");
+  ASSERT_EQ(restarts.size(), 1U);
+  EXPECT_EQ(restarts[0], FrameId{1});
+  EXPECT_EQ(c.restarts, 1U);
+  EXPECT_EQ(pairs.take()->times.frame, FrameId{0});
+}
+
+TEST_F(DecodeThreadTest, ARestartFindsLostMotionAgain) {
+  MovingSquare square(2);
+  motion = square.description;
+  std::vector<Arrival> input =
+      list(square.with_motion(server.update(0, true), 0), server.picture(0, 90, true),
+           square.with_motion(server.update(1, false), 1), server.picture(1, 90, false),
+           square.with_motion(server.update(2, true), 2), server.picture(2, 90, true));
+  input[2].update->update.meta.motion.clear();
+  run(std::move(input));
+  EXPECT_EQ(restarts.size(), 1U);
+  const auto pair = pairs.take();
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->times.frame, FrameId{2});
+  EXPECT_NEAR(highest(*pair), 1 + 2, 2 * square_stream().grid.max_error());
+}
+
+TEST_F(DecodeThreadTest, MotionOfAStreamThatRestsBreaksTheSession) {
+  std::vector<Arrival> input = list(server.update(0, true), server.picture(0, 90, true));
+  input[0].update->update.meta.motion = {std::byte{0xB3}};
+  run(std::move(input));
+  EXPECT_THAT(broken, HasSubstr("nothing moves"));
 }
 
 TEST_F(DecodeThreadTest, AsksForAnIdrAfterGarbageAndSkipsUntilItComes) {

@@ -90,6 +90,35 @@ TEST(PointRun, EveryMethodGivesTheSameFiguresInTheSameOrderTwice) {
   }
 }
 
+TEST(PointRun, AMovingSceneIsShownWhereItIsAndLatencyCosts) {
+  PointSettings s = small("sas");
+  s.scene = "parade";
+  s.path = "parade-still";
+  s.server_hz = s.client_hz;
+  const PointResult live = run_point(s, {});
+  PointSettings resting = small("sas");
+  resting.server_hz = resting.client_hz;
+  resting.path = "atrium-still";
+  EXPECT_GT(figure(live, "mssim"), 0.98);
+  EXPECT_GT(figure(live, "mssim"), figure(run_point(resting, {}), "mssim") - 0.01)
+      << "as good as a scene that rests";
+  EXPECT_GT(figure(live, "motion_mbps"), 0.01);
+  s.latency_ms = 200;
+  EXPECT_LT(figure(run_point(s, {}), "mssim"), figure(live, "mssim") - 0.01)
+      << "nobody but what is there moves";
+  s.profile = "wifi6";
+  s.bitrate_mbps = 8;
+  EXPECT_GT(figure(run_point(s, {}), "motion_mbps"), 0.01) << "real sessions over a network";
+}
+
+TEST(PointRun, WarpsShowMovingScenesToo) {
+  PointSettings s = small("atw");
+  s.scene = "parade";
+  s.path = "parade-still";
+  s.server_hz = s.client_hz;
+  EXPECT_GT(figure(run_point(s, {}), "mssim"), 0.995);
+}
+
 TEST(PointRun, WithoutLatencyAndCodingAWarpIsTheTruthButForItsChroma) {
   for (const char* method : {"atw", "mesh", "iterative"}) {
     PointSettings s = small(method);
@@ -118,13 +147,13 @@ TEST(PointRun, ALensLeavesTheTruthsCornersBlack) {
   PointSettings s = small("sas");
   render::Camera camera = display_camera(s);
   camera.pose = render::CameraPath::load("atrium").value().at(Duration{});
-  const TruePicture straight = Truth(*device, scene, s.scene, folder.path()).picture(camera);
+  const TruePicture straight = Truth(*device, scene, s.scene, folder.path()).picture(camera, {});
   s.lens = "generic";
-  const TruePicture bent = Truth(*device, scene, s.scene, folder.path(), display_lens(s)).picture(camera);
+  const TruePicture bent = Truth(*device, scene, s.scene, folder.path(), display_lens(s)).picture(camera, {});
   EXPECT_NE(straight.picture.at(0, 0)[3], 0);
   EXPECT_EQ(bent.picture.at(0, 0)[3], 0);
   EXPECT_EQ(bent.deferred_fragments, straight.deferred_fragments) << "shaded before the lens";
-  const TruePicture kept = Truth(*device, scene, s.scene, folder.path(), display_lens(s)).picture(camera);
+  const TruePicture kept = Truth(*device, scene, s.scene, folder.path(), display_lens(s)).picture(camera, {});
   EXPECT_EQ(kept.picture, bent.picture);
   EXPECT_EQ(kept.deferred_fragments, bent.deferred_fragments);
 }

@@ -59,6 +59,10 @@ ServerHello answer() {
   m.stream.background = {0.25F, 0.5F, 4.0F};
   m.stream.alpha_mask = true;
   m.stream.memory = AtlasMemory{7, 1, 0.9};
+  m.stream.motion = MotionDescription{.movers = {{0, 3, false, 1}, {3, 1000, true, 0}, {2000, 1, false, 0}},
+                                      .pivots = {{1, 2, 3}, {0, (1U << 18U) - 1, 0}},
+                                      .translation_step = 0.25,
+                                      .rotation_bits = 17};
   return m;
 }
 
@@ -104,6 +108,7 @@ TEST(Messages, ServerHelloComesBackAsSent) {
   EXPECT_EQ(m.stream.payload_type, 96);
   EXPECT_EQ(m.stream.background, (std::array<float, 3>{0.25F, 0.5F, 4.0F}));
   EXPECT_EQ(m.stream.memory, (AtlasMemory{7, 1, 0.9}));
+  EXPECT_EQ(m.stream.motion, answer().stream.motion);
   EXPECT_TRUE(m.stream.alpha_mask);
   EXPECT_FALSE(m.stream.alpha_blend);
   EXPECT_FALSE(m.stream.double_sided);
@@ -116,6 +121,8 @@ TEST(Messages, FrameMetaComesBackAsSent) {
   m.stamps = {at(1ns), at(2ms), at(3s), at(-4s), at(5h)};
   m.cover = 150ms;
   m.meta = test::from_hex("00 ff 80 7f");
+  m.scene_time = -3s;
+  m.motion = test::from_hex("b2 01");
   const FrameMeta got = round_trip_of(m);
   EXPECT_EQ(got.frame, m.frame);
   EXPECT_EQ(got.pose, m.pose);
@@ -126,6 +133,8 @@ TEST(Messages, FrameMetaComesBackAsSent) {
   EXPECT_EQ(got.stamps.sent, m.stamps.sent);
   EXPECT_EQ(got.cover, m.cover);
   EXPECT_EQ(got.meta, m.meta);
+  EXPECT_EQ(got.scene_time, m.scene_time);
+  EXPECT_EQ(got.motion, m.motion);
 }
 
 TEST(Messages, TheOthersComeBackAsSent) {
@@ -145,6 +154,29 @@ TEST(Messages, TheOthersComeBackAsSent) {
   const RestartRequest restart = round_trip_of(RestartRequest{FrameId{12}, "lost"});
   EXPECT_EQ(restart.frame, FrameId{12});
   EXPECT_EQ(restart.text, "lost");
+}
+
+TEST(Messages, AStreamMayRest) {
+  ServerHello m = answer();
+  m.stream.motion.reset();
+  EXPECT_FALSE(round_trip_of(m).stream.motion);
+  EXPECT_FALSE(round_trip_of(hello()).shows_motion);
+  ClientHello moving = hello();
+  moving.shows_motion = true;
+  EXPECT_TRUE(round_trip_of(moving).shows_motion);
+}
+
+TEST(Messages, AsManyMoversAsThereMayBeFitTheAnswer) {
+  ServerHello m = answer();
+  m.stream.max_patches = 1U << 26U;
+  m.stream.grid.bits = 20;
+  MotionDescription& motion = *m.stream.motion;
+  motion.movers.clear();
+  motion.pivots.assign(kMostMovers, GridPosition((1U << 20U) - 1));
+  for (std::uint32_t i = 0; i < kMostMovers; ++i)
+    motion.movers.push_back({i * ((1U << 26U) / kMostMovers) + 10'000, 20'000, false, kMostMovers - 1 - i});
+  EXPECT_LE(octets_of(Message{m}).size(), kMaxEnvelopeBeforeHello);
+  EXPECT_EQ(round_trip_of(m).stream.motion, m.stream.motion);
 }
 
 TEST(Messages, AStreamMayHaveNoMemory) {
@@ -278,6 +310,24 @@ TEST(ParseEnvelope, RefusesBadServerHellos) {
   check("stream.memory.superblock_log2", [&](auto& m) { memory(m)->set_superblock_log2(11); });
   check("stream.memory.min_block_log2", [&](auto& m) { memory(m)->set_min_block_log2(8); });
   check("stream.memory.high_water", [&](auto& m) { memory(m)->set_high_water(kNaN); });
+  const auto motion = [](auto& m) { return m.mutable_stream()->mutable_motion(); };
+  check("stream.motion.gaps", [&](auto& m) { motion(m)->clear_gaps(); });
+  check("stream.motion.gaps", [&](auto& m) {
+    for (std::uint32_t i = 0; i < kMostMovers; ++i) motion(m)->add_gaps(0);
+  });
+  check("stream.motion.gaps", [&](auto& m) { motion(m)->set_gaps(2, (1U << 22U) - 1003); });
+  check("stream.motion.gaps", [&](auto& m) { motion(m)->set_gaps(0, 0xFFFFFFFF); });
+  check("stream.motion.counts", [&](auto& m) { motion(m)->add_counts(1); });
+  check("stream.motion.counts", [&](auto& m) { motion(m)->set_counts(1, 0); });
+  check("stream.motion.kinds", [&](auto& m) { motion(m)->mutable_kinds()->RemoveLast(); });
+  check("stream.motion.kinds", [&](auto& m) { motion(m)->set_kinds(0, 3); });
+  check("stream.motion.pivots", [&](auto& m) { motion(m)->add_pivots(0); });
+  check("stream.motion.pivots", [&](auto& m) { motion(m)->set_pivots(5, 1U << 18U); });
+  check("stream.motion.pivots", [&](auto& m) {
+    for (int i = 0; i < 6; ++i) motion(m)->add_pivots(0);
+  });
+  check("stream.motion.translation_step", [&](auto& m) { motion(m)->set_translation_step(kNaN); });
+  check("stream.motion.rotation_bits", [&](auto& m) { motion(m)->set_rotation_bits(21); });
   check("stream.max_vertices", [](auto& m) { m.mutable_stream()->set_max_vertices(0xFFFFFFFF); });
   check("stream.max_patches", [](auto& m) { m.mutable_stream()->set_max_patches(0); });
   check("stream.payload_type", [](auto& m) { m.mutable_stream()->set_payload_type(72); });
@@ -291,6 +341,9 @@ TEST(ParseEnvelope, RefusesOtherBadMessages) {
                  [](wire::Envelope& e) { e.mutable_frame_meta()->set_cover(-1); });
   expect_refused(FrameMeta{}, "frame_meta.stamps", [](wire::Envelope& e) {
     e.mutable_frame_meta()->set_encode_end(std::numeric_limits<std::int64_t>::min());
+  });
+  expect_refused(FrameMeta{}, "frame_meta.scene_time", [](wire::Envelope& e) {
+    e.mutable_frame_meta()->set_scene_time(std::numeric_limits<std::int64_t>::max());
   });
   expect_refused(Refusal{}, "refusal.code",
                  [](wire::Envelope& e) { e.mutable_refusal()->set_code(wire::Refusal::UNSPECIFIED); });

@@ -98,6 +98,44 @@ TEST_F(AtlasStreamTest, AClientCanFollowEveryFrame) {
   EXPECT_GT(replica.patches.size(), 100U);
 }
 
+TEST_F(AtlasStreamTest, AMovingSceneTellsWhereThingsAreIfAsked) {
+  const auto parade = std::make_shared<const render::Scene>(render::load_scene("parade").value());
+  AtlasStream stream(settings, parade,
+                     render::make_method(settings.method, *device, parade, settings.render));
+  ASSERT_TRUE(stream.motion());
+  EXPECT_EQ(describe(*parade, stream, settings).motion, stream.motion());
+  request.camera.pose = parade->start;
+  EXPECT_TRUE(stream.encode(stream.render(request)).value().motion.empty()) << "at rest";
+  request.restart = true;
+  std::size_t octets = 0;
+  for (int n = 0; n < 4; ++n) {
+    request.scene_time = 100ms * n;
+    const auto frame = stream.encode(stream.render(request)).value();
+    EXPECT_EQ(frame.scene_time, *request.scene_time);
+    ASSERT_FALSE(frame.motion.empty());
+    EXPECT_EQ(frame.motion[0], request.restart ? std::byte{0xB3} : std::byte{0xB2});
+    octets = frame.motion.size();
+    request.restart = false;
+  }
+  EXPECT_GT(octets, 500U) << "a figure of thousands of points walks";
+}
+
+TEST_F(AtlasStreamTest, ASceneThatRestsIsStreamedAlikeWhateverTheTime) {
+  const auto resting = make_stream();
+  const auto timed = make_stream();
+  EXPECT_FALSE(timed->motion());
+  for (int n = 0; n < 3; ++n) {
+    request.camera.pose.position.x += 0.1;
+    request.scene_time.reset();
+    const auto wanted = resting->encode(resting->render(request)).value();
+    request.scene_time = 100ms * n;
+    const auto got = timed->encode(timed->render(request)).value();
+    EXPECT_EQ(got.meta, wanted.meta);
+    EXPECT_EQ(got.video, wanted.video);
+    EXPECT_TRUE(got.motion.empty());
+  }
+}
+
 TEST_F(AtlasStreamTest, RestartTellsANewcomerAll) {
   const auto stream = make_stream();
   const ReplicaTracker limits(scene, settings.grid_bits);

@@ -22,6 +22,7 @@ class FakeStream final : public FrameMaker {
     std::atomic<std::uint32_t> restarts{0};
     std::atomic<bool> order_broken{false};
     std::atomic<double> eye_separation{0};  ///< that the last frame was asked for
+    std::atomic<double> scene_seconds{-1};  ///< likewise; -1: at rest
     std::atomic<double> foveation{-1};      ///< that the last emphasis asked for; -2: it did not say
     std::atomic<std::size_t> priorities{0};
     std::atomic<std::uint32_t> emphases{0};
@@ -41,6 +42,7 @@ class FakeStream final : public FrameMaker {
     prepared.intra = request.restart || request.refresh || n % 5 == 0;
     prepared.rendered.frame = FrameId{n};
     watch_.eye_separation = request.hints.eye_separation;
+    watch_.scene_seconds = seconds_of(request.scene_time).value_or(-1);
     if (request.emphasis) {
       watch_.foveation = request.emphasis->foveation.value_or(-2);
       watch_.priorities = request.emphasis->priorities.size();

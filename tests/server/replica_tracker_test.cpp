@@ -1,9 +1,13 @@
 #include "server/replica_tracker.h"
 
+#include "render/scene/scene_motion.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
+#include <set>
 
 namespace atlaswire::server {
 namespace {
@@ -45,6 +49,28 @@ TEST(ReplicaTracker, SendsEachVertexOnce) {
   EXPECT_EQ(first.added[0].draw, (PatchClass{PatchClass::Alpha::kMask, true}));
   change.added = {{PatchId{0}, kBlock}};
   EXPECT_THAT(ids(tracker.update(FrameId{1}, change).vertices), ElementsAre(0));
+}
+
+TEST(ReplicaTracker, PointsThatMoveApartHaveGridPointsOfTheirOwn) {
+  auto scene = std::make_shared<render::Scene>(*two_patches());
+  for (glm::vec3& position : scene->positions) position = {-1, -1, 0};
+  auto motion = std::make_shared<render::SceneMotion>();
+  motion->parts.resize(1);
+  motion->parts[0].mover = {.first_patch = 0, .patch_count = 2, .deforms = true};
+  motion->parts[0].positions = {0, 4};
+  const std::vector<render::PlacedPatch> blocks{{PatchId{0}, kBlock}, {PatchId{1}, kBlock}};
+  ReplicaTracker rigid(scene, 16);
+  for (const auto& vertex : rigid.restart(FrameId{0}, blocks).vertices)
+    EXPECT_EQ(vertex.position, GridPosition(0, 0, 0));
+  scene->motion = motion;
+  ReplicaTracker tracker(scene, 16);
+  std::set<std::array<std::uint32_t, 3>> places;
+  for (const auto& vertex : tracker.restart(FrameId{0}, blocks).vertices) {
+    const GridPosition& p = vertex.position;
+    places.insert({p.x, p.y, p.z});
+    EXPECT_LE(p.x + p.y, 2U) << "near where they rest";
+  }
+  EXPECT_EQ(places.size(), 4U);
 }
 
 TEST(ReplicaTracker, VerticesStayKnownAfterTheirPatchIsGone) {

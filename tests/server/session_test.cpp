@@ -45,6 +45,19 @@ TEST_F(SessionHandshake, AgreesOnTheBestFormOfMetaUpdatesThatBothKnow) {
   }
 }
 
+TEST_F(SessionHandshake, TellsWhatMovesToThoseOnlyWhoShowIt) {
+  proto::StreamDescription moving = stream();
+  moving.motion = proto::MotionDescription{.movers = {{0, 5, true, 0}}, .pivots = {}};
+  for (const bool shows : {false, true}) {
+    start();
+    feed(proto::ClientHello{.shows_motion = shows});
+    session->accept(moving, now);
+    const auto answer = replies();
+    ASSERT_EQ(answer.size(), 1U);
+    EXPECT_EQ(std::get<proto::ServerHello>(answer[0]).stream.motion.has_value(), shows);
+  }
+}
+
 TEST_F(SessionHandshake, RefusesAnotherVersionAndNamesBoth) {
   start();
   proto::ClientHello future;

@@ -124,6 +124,24 @@ TEST_F(StreamRunnerTest, RefreshReachesTheStream) {
   EXPECT_GT(source.watch.intra, before);
 }
 
+TEST_F(StreamRunnerTest, ScenesMoveFromTheFirstFrameOnForThoseWhoShowIt) {
+  start();
+  pose(1);
+  ASSERT_TRUE(wait([&] { return frames.size() >= 3; }));
+  EXPECT_EQ(source.watch.scene_seconds, -1);
+  runner.reset();
+  frames.clear();
+  settings.shows_motion = true;
+  start();
+  pose(1);
+  ASSERT_TRUE(wait([&] { return !frames.empty(); }));
+  const double early = source.watch.scene_seconds;
+  EXPECT_GE(early, 0);
+  const auto rendered = source.watch.rendered.load();
+  ASSERT_TRUE(wait([&] { return source.watch.rendered > rendered + 2; }));
+  EXPECT_GT(source.watch.scene_seconds, early);
+}
+
 TEST_F(StreamRunnerTest, RestartReachesTheStreamOnce) {
   start();
   pose(1);
@@ -143,7 +161,8 @@ TEST_F(StreamRunnerTest, AFailedDeviceEndsTheStreamOnce) {
   runner.reset();
   ASSERT_EQ(failures.size(), 1U);
   EXPECT_EQ(failures[0], "rendering failed: device lost");
-  // Frames 0 to 2 were rendered; the last may still wait for the encoder when its stream breaks, and is dropped.
+  // Frames 0 to 2 were rendered; the last may still wait for the encoder when its stream breaks, and is
+  // dropped.
   EXPECT_GE(frames.size(), 2U);
   EXPECT_LE(frames.size(), 3U);
   EXPECT_EQ(source.given_back, 0U) << "a broken stream is not used again";
