@@ -69,9 +69,9 @@ class DisplayLoop {
       hooks_->on_measuring(draw_.start);
     }
     const bool is_first = switch_pair();
-    const Time posed = steady_now();
+    posed_ = steady_now();
     render::Camera camera = settings_.camera;
-    camera.pose = tracker_->at(posed).value();
+    camera.pose = tracker_->at(posed_).value();
     renderer_->draw(camera);
     draw_.end = steady_now();
     if (is_first) {
@@ -80,11 +80,11 @@ class DisplayLoop {
     }
     outcome_.log.add({pair_.times, draw_});
     ++outcome_.displayed;
-    recent_motion_.add(draw_.end - posed);
+    recent_motion_.add(draw_.end - posed_);
     if (measuring_) {
       ++outcome_.displayed_measured;
       outcome_.paired_measured += is_first ? 1U : 0U;
-      outcome_.motion_to_photon.add(draw_.end - posed);
+      outcome_.motion_to_photon.add(draw_.end - posed_);
     }
     keep_pictures(camera);
   }
@@ -109,12 +109,22 @@ class DisplayLoop {
     Sample sample{.frame = pair_.times.frame,
                   .display_index = outcome_.displayed,
                   .camera = head,
+                  .scene_time = scene_time_now(),
                   .view = {},
                   .atlas = pair_.picture};
-    if (settings_.at_server_pose && pair_.server_pose) sample.camera.pose = pair_.server_pose->pose;
+    if (settings_.at_server_pose && pair_.server_pose) {
+      sample.camera.pose = pair_.server_pose->pose;
+      sample.scene_time = pair_.times.scene_time;
+    }
     sample.camera = renderer_->measured_camera(sample.camera);
     sample.view = renderer_->draw_undistorted(sample.camera);
     outcome_.samples.push_back(std::move(sample));
+  }
+
+  /// Where the server's scene is by now, whatever the pair shows: what moved meanwhile is latency's cost.
+  [[nodiscard]] std::optional<Duration> scene_time_now() const {
+    const PairTimes& pair = pair_.times;
+    return pair.scene_time ? std::optional(*pair.scene_time + (posed_ - pair.render_start)) : std::nullopt;
   }
 
   void report_progress(Time now) {
@@ -141,6 +151,7 @@ class DisplayLoop {
   SampleSchedule schedule_;
   std::optional<Pair> pending_;  ///< taken, not shown yet
   Pair pair_;                    ///< on display
+  Time posed_{};                 ///< when the pose on display was sampled
   DrawTimes draw_;
   bool measuring_ = false;
   std::uint64_t paired_ = 0;

@@ -170,6 +170,7 @@ Pair PairMaker::make_pair(const DecodedFrame& picture, const DecodedUpdate& upda
                 .pose_sampled = server.pose ? std::optional(server.pose->sampled) : std::nullopt,
                 .pose_received = server.pose_received,
                 .render_start = server.render_start,
+                .scene_time = moving_ ? std::optional(update.arrived.update.meta.scene_time) : std::nullopt,
                 .encode_end = server.encode_end,
                 .video_arrival = picture.arrival,
                 .meta_arrival = update.arrived.update.arrival,

@@ -24,6 +24,11 @@ render::Picture opaque(render::Picture picture) {
 }  // namespace
 
 struct Reference::Parts {
+  render::Picture truth(const Sample& sample) {
+    if (sample.scene_time) scene.move_to(to_seconds(*sample.scene_time));
+    return forward.render(sample.camera);
+  }
+
   Parts(render::Device& device, std::shared_ptr<const render::Scene> s)
       : scene(device, std::move(s)), forward(device, scene) {}
   render::SceneGpu scene;
@@ -39,7 +44,7 @@ std::vector<Quality> Reference::compare(const std::vector<Sample>& samples,
   std::vector<Quality> all;
   for (const Sample& sample : samples) {
     if (should_stop()) break;
-    Quality q = client::compare(parts_->forward.render(sample.camera), sample.view);
+    Quality q = client::compare(parts_->truth(sample), sample.view);
     q.frame = sample.frame;
     q.display_index = sample.display_index;
     all.push_back(q);
@@ -48,7 +53,7 @@ std::vector<Quality> Reference::compare(const std::vector<Sample>& samples,
 }
 
 render::Picture Reference::triptych(const Sample& sample, const Quality& quality, Extent2D atlas) {
-  const render::Picture truth = opaque(parts_->forward.render(sample.camera));
+  const render::Picture truth = opaque(parts_->truth(sample));
   const render::Picture view = opaque(sample.view);
   const std::uint32_t height = sample.camera.extent.height;
   const auto width = static_cast<std::uint32_t>(std::uint64_t{atlas.width} * height / atlas.height);

@@ -14,8 +14,8 @@
 
 namespace atlaswire::client {
 
-/// Renders ground truth for each sample's camera and compares ([SAS] 5.6). Stops early, with what it has,
-/// when `should_stop` says so.
+/// Renders ground truth for each sample's camera and scene time and compares ([SAS] 5.6). Stops early, with
+/// what it has, when `should_stop` says so.
 class Reference {
  public:
   Reference(render::Device& device, std::shared_ptr<const render::Scene> scene);

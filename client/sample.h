@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace atlaswire::client {
@@ -17,6 +18,7 @@ struct Sample {
   FrameId frame{};
   std::uint64_t display_index = 0;
   render::Camera camera;
+  std::optional<Duration> scene_time;  ///< that the truth is of; nullopt: nothing moves
   render::Picture view;
   std::shared_ptr<const codec::DecodedPicture> atlas;
 };

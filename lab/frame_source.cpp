@@ -36,8 +36,9 @@ server::ViewRequest FrameSource::request_for(const Pose& head, const FrameTiming
   request.camera = camera_;
   request.camera.pose = head;
   request.cover = timing.shown_until - timing.posed;
-  request.scene_time = timing.made;
   const Duration middle = (timing.shown_from + timing.shown_until) / 2;
+  request.scene_time = timing.made;
+  if (settings_.foresee_motion) request.scene_ahead = std::max(middle - timing.made, Duration::zero());
   if (is_warp_) {
     if (settings_.predict) request.camera.pose = extrapolate(head, middle - timing.posed);
     if (settings_.stereo) request.camera.pose = render::eye_pose(request.camera.pose, -settings_.ipd / 2);

@@ -52,6 +52,8 @@ constexpr std::array kKeys{
     Key{"meta_codec", &S::meta_codec, 0, 0, "mirror gate plain", "how geometry travels (sas)"},
     Key{"new_patches", &S::new_patches, 0, 1'000'000, "",
         "patches that a frame may show for the first time; 0: all (sas)"},
+    Key{"foresee_motion", &S::foresee_motion, 0, 0, "",
+        "what moves in the scene is shown where it will be when its picture is displayed"},
     Key{"server_hz", &S::server_hz, 0.1, 1000, "", "server frames a second"},
     Key{"client_hz", &S::client_hz, 0.1, 1000, "", "displayed frames a second"},
     Key{"latency_ms", &S::latency_ms, 0, 10000, "",

@@ -35,6 +35,7 @@ struct PointSettings {
   std::uint32_t reshade_interval = 1;  ///< frames (sas)
   std::uint32_t grid_bits = 0;         ///< of the replica's grid; 0: suited to the scene (sas)
   std::string meta_codec = "mirror";   ///< how geometry travels: "mirror", "gate" or "plain" (sas)
+  bool foresee_motion = false;         ///< what moves is shown where it will be at its picture's display
   std::uint32_t new_patches = 0;       ///< a frame may show for the first time; 0: all (sas)
   // Time and network.
   double server_hz = 30;   ///< frames a second

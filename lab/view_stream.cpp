@@ -32,7 +32,7 @@ server::PreparedFrame ViewStream::render(const server::ViewRequest& request) {
                                        .camera = request.camera,
                                        .cover = request.cover,
                                        .intra = prepared.intra,
-                                       .scene_seconds = server::seconds_of(request.scene_time),
+                                       .scene_seconds = server::scene_seconds(request),
                                        .hints = request.hints});
   if (const std::span<const float> depth = prepared.rendered.view->depth; !depth.empty()) {
     depths_.insert_or_assign(next_frame_, std::vector<float>(depth.begin(), depth.end()));

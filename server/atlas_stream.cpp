@@ -63,7 +63,7 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
                                        .cover = request.cover,
                                        .intra = prepared.intra,
                                        .restart = restart,
-                                       .scene_seconds = seconds_of(request.scene_time),
+                                       .scene_seconds = scene_seconds(request),
                                        .hints = request.hints});
   prepared.scene_time = request.scene_time;
   if (motion_ && request.scene_time && prepared.rendered.moved != nullptr)

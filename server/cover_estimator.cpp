@@ -32,4 +32,8 @@ Duration CoverEstimator::cover() const {
                     settings_.most);
 }
 
+Duration CoverEstimator::display_delay(Duration waited) const {
+  return std::max(cover() - round_trip_ / 2 - waited - interval_ / 2, Duration::zero());
+}
+
 }  // namespace atlaswire::server

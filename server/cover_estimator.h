@@ -19,6 +19,9 @@ class CoverEstimator {
   /// A frame's last datagram left this long after its encoding.
   void on_sending(Duration sending);
   [[nodiscard]] Duration cover() const;
+  /// How long after a frame's start its picture is on display, in the middle of that time: what cover() is
+  /// beyond the pose's way here, its wait until the start, `waited`, and half a frame interval.
+  [[nodiscard]] Duration display_delay(Duration waited) const;
 
  private:
   CoverSettings settings_;

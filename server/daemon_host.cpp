@@ -38,6 +38,7 @@ std::unique_ptr<StreamRunner> Daemon::Impl::start_stream(Connection& connection)
   runner.camera = client_camera(hello.display, hello.vertical_fov, source_->description().near_plane);
   runner.eye_separation = hello.eye_separation;
   runner.shows_motion = hello.shows_motion && source_->description().motion.has_value();
+  runner.foresee_motion = settings_.stream.foresee_motion;
   runner.meta_codec = connection.session().meta_codec();
   runner.emphasis = emphasis();
   // Always told, since a warm stream may come from a client with another wish. Constant quality has no rate.

@@ -31,12 +31,14 @@ struct ViewRequest {
   /// For how long what moves has been moving; nullopt: everything is to be shown at rest, and no motion told.
   /// Between two restarts always or never.
   std::optional<Duration> scene_time;
+  Duration scene_ahead{};  ///< so much later than `scene_time` is shown: when the picture will be on display
   render::ViewHints hints;
 };
 
-/// ViewRequest::scene_time as a method takes it.
-inline std::optional<double> seconds_of(const std::optional<Duration>& scene_time) {
-  return scene_time ? std::optional(to_seconds(*scene_time)) : std::nullopt;
+/// The time into its clips at which a method is to show the scene.
+inline std::optional<double> scene_seconds(const ViewRequest& request) {
+  if (!request.scene_time) return std::nullopt;
+  return to_seconds(*request.scene_time + request.scene_ahead);
 }
 
 /// A frame between rendering and encoding. `rendered.picture` borrows from the method's ring.

@@ -112,6 +112,9 @@ void add_picture_options(CLI::App& app, DaemonSettings& s, Raw& raw) {
       "early first picture against one that is whole at once");
   group->add_option("--reshade-interval", render.reshade_interval,
                     "Shade each block at least every N-th frame, 1..60: speed against stale reflections");
+  group->add_flag("--foresee-motion", s.stream.foresee_motion,
+                  "Show what moves where it will be when the picture is displayed: no lag, but only clips "
+                  "can be foreseen");
   group->add_option(
       "--grid-bits", s.stream.grid_bits,
       "Bits an axis of client vertex positions, 8..20, or 0: as many as a step of 2 mm needs, 16 to 20");

@@ -36,6 +36,9 @@ struct StreamSettings {
       0;  ///< of the client replica's position grid, 8..20; 0: PositionGrid::suited_bits
   codec::MetaCodecKind meta_codec = codec::kMetaCodecs.front();  ///< for clients that know it
   CoverSettings cover;
+  /// What moves is shown where it will be when the picture is displayed, instead of where it is: clips tell
+  /// the future, which a scene that answers to somebody could not.
+  bool foresee_motion = false;
   std::optional<render::LayoutColours> layout_colours;  ///< of ViewRequest::layout; nullopt: not followed
 };
 

@@ -129,10 +129,13 @@ ViewRequest StreamRunner::make_request() {
 }
 
 /// Things move by the stream's own clock, from its first frame on.
-std::optional<Duration> StreamRunner::scene_time(Time now) {
-  if (!settings_.shows_motion) return std::nullopt;
+void StreamRunner::time_scene(Time now, ViewRequest& request) {
+  if (!settings_.shows_motion) return;
   if (!first_start_) first_start_ = now;
-  return now - *first_start_;
+  request.scene_time = now - *first_start_;
+  if (!settings_.foresee_motion) return;
+  const std::lock_guard lock(mutex_);
+  request.scene_ahead = cover_.display_delay(now - request.pose_received);
 }
 
 void StreamRunner::render_loop(const std::stop_token& stop) {
@@ -143,7 +146,7 @@ void StreamRunner::render_loop(const std::stop_token& stop) {
     while (wait_for_turn(stop, earliest)) {
       ViewRequest request = make_request();
       const Time start = steady_now();
-      request.scene_time = scene_time(start);
+      time_scene(start, request);
       // Late by less than an interval: keep the rhythm; by more: start a new one.
       earliest = start - earliest < interval ? earliest + interval : start + interval;
       PreparedFrame prepared = maker_->render(request);

@@ -26,7 +26,8 @@ class StreamRunner {
  public:
   struct Settings {
     double max_fps = 15;
-    bool shows_motion = false;  ///< the client does; its scene moves from the first frame on
+    bool shows_motion = false;    ///< the client does; its scene moves from the first frame on
+    bool foresee_motion = false;  ///< StreamSettings::foresee_motion
     CoverSettings cover;
     render::Camera camera;            ///< its pose is replaced by the client's
     double eye_separation = 0;        ///< metres; above 0 the client's two eyes are beside the pose
@@ -81,7 +82,7 @@ class StreamRunner {
   void encode_loop();
   bool wait_for_turn(const std::stop_token& stop, Time earliest);
   ViewRequest make_request();
-  [[nodiscard]] std::optional<Duration> scene_time(Time now);
+  void time_scene(Time now, ViewRequest& request);
   void encode_one(PreparedFrame prepared);
   void fail(const std::string& reason);
 

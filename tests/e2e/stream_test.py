@@ -32,6 +32,19 @@ class Stream(unittest.TestCase):
         self.assertNotIn("VUID", daemon.log())
         self.assertNotIn("alidation error", daemon.log())
 
+    def test_a_moving_scene_is_shown_where_it_was(self):
+        daemon = Daemon(self, "--validation", "--fps", "6", scene="parade")
+        client = Client(self, daemon.port, "--validation", "--reference", "parade", "--samples", "4", "--at-server-pose",
+                        duration=6)
+        code, output = client.finish()
+        self.assertEqual(code, 0, output + daemon.log())
+        summary = client.summary()
+        self.assertGreaterEqual(summary["frames"]["paired"], 6, summary)
+        self.assertGreater(summary["mssim"], 0.97, summary["samples"])
+        self.assertGreater(summary["coverage"], 0.999, summary["samples"])
+        self.assertEqual(daemon.stop(), 0)
+        self.assertNotIn("VUID", daemon.log() + output)
+
     def test_ffmpeg_plays_the_mirrored_stream_from_the_printed_sdp(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             probe.bind(("127.0.0.1", 0))

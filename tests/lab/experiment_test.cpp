@@ -113,7 +113,7 @@ TEST(Experiment, EveryShippedOneParsesAndPlansWholeAndQuick) {
   const std::vector<std::string> names = shipped_experiments();
   EXPECT_EQ(names, (std::vector<std::string>{"amortization", "atlas_size", "bitrate", "causes", "coherence",
                                              "endtoend", "grid", "join", "latency", "latency-bitrate",
-                                             "network", "tradeoff", "upsampling", "walk"}));
+                                             "motion", "network", "tradeoff", "upsampling", "walk"}));
   for (const std::string& name : names) {
     const auto e = parse_experiment(shipped_experiment_text(name), name);
     ASSERT_TRUE(e.has_value()) << e.error().message();

@@ -41,7 +41,7 @@ TEST(Keys, EveryMemberOfTheSettingsHasAKey) {
     }
     EXPECT_NE(value_text(key, s), before) << key.name;
   }
-  EXPECT_EQ(keys().size(), 39U);  // members of PointSettings
+  EXPECT_EQ(keys().size(), 40U);  // members of PointSettings
 }
 
 TEST(Keys, RealNumbersSurviveExactly) {

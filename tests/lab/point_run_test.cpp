@@ -106,6 +106,8 @@ TEST(PointRun, AMovingSceneIsShownWhereItIsAndLatencyCosts) {
   s.latency_ms = 200;
   EXPECT_LT(figure(run_point(s, {}), "mssim"), figure(live, "mssim") - 0.01)
       << "nobody but what is there moves";
+  s.foresee_motion = true;
+  EXPECT_GT(figure(run_point(s, {}), "mssim"), figure(live, "mssim") - 0.005) << "clips can be foreseen";
   s.profile = "wifi6";
   s.bitrate_mbps = 8;
   EXPECT_GT(figure(run_point(s, {}), "motion_mbps"), 0.01) << "real sessions over a network";

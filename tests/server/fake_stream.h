@@ -42,7 +42,7 @@ class FakeStream final : public FrameMaker {
     prepared.intra = request.restart || request.refresh || n % 5 == 0;
     prepared.rendered.frame = FrameId{n};
     watch_.eye_separation = request.hints.eye_separation;
-    watch_.scene_seconds = seconds_of(request.scene_time).value_or(-1);
+    watch_.scene_seconds = scene_seconds(request).value_or(-1);
     if (request.emphasis) {
       watch_.foveation = request.emphasis->foveation.value_or(-2);
       watch_.priorities = request.emphasis->priorities.size();

@@ -82,6 +82,16 @@ TEST(CoverEstimator, StaysWithinItsBounds) {
   EXPECT_EQ(fixed.cover(), Duration{25ms});
 }
 
+TEST(CoverEstimator, AFrameIsDisplayedInTheMiddleOfWhatItCovers) {
+  CoverEstimator cover({.fixed = {}, .allowance = 10ms, .most = 500ms}, 50ms);
+  cover.on_round_trip(30ms);
+  for (int i = 0; i < 200; ++i) cover.on_frame(80ms, 100ms);
+  // 15 ms back to the client, 80 - 20 ms of work after the pose's wait, 10 ms allowed, half of 100 ms on
+  // display.
+  EXPECT_NEAR(to_ms(cover.display_delay(20ms)), 15 + 60 + 10 + 50, 0.1);
+  EXPECT_EQ(cover.display_delay(from_seconds(5)), Duration::zero());
+}
+
 TEST(CoverEstimator, PacingCountsToo) {
   CoverEstimator cover({.fixed = {}, .allowance = 0ms, .most = 500ms}, 50ms);
   for (int i = 0; i < 200; ++i) cover.on_sending(24ms);

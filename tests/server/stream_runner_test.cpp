@@ -142,6 +142,16 @@ TEST_F(StreamRunnerTest, ScenesMoveFromTheFirstFrameOnForThoseWhoShowIt) {
   EXPECT_GT(source.watch.scene_seconds, early);
 }
 
+TEST_F(StreamRunnerTest, ForeseenMotionIsAheadByWhatFramesTake) {
+  settings.shows_motion = true;
+  settings.foresee_motion = true;
+  settings.cover.fixed = std::chrono::hours(1);
+  start();
+  pose(1);
+  ASSERT_TRUE(wait([&] { return !frames.empty(); }));
+  EXPECT_NEAR(source.watch.scene_seconds, 3600, 60);
+}
+
 TEST_F(StreamRunnerTest, RestartReachesTheStreamOnce) {
   start();
   pose(1);
