@@ -85,6 +85,12 @@ Buffer upload_vertices(SubmitContext& context, const Scene& scene, std::span<con
                 Usage::eVertexBuffer | Usage::eStorageBuffer);
 }
 
+vk::ImageUsageFlags shadow_usage(const Scene& scene) {
+  using ImageUsage = vk::ImageUsageFlagBits;
+  const vk::ImageUsageFlags usage = ImageUsage::eDepthStencilAttachment | ImageUsage::eSampled;
+  return scene.motion ? usage | ImageUsage::eTransferDst : usage;
+}
+
 /// What the sun's view must hold: what rests, and all places where something moves.
 ShadowFit fit_shadow_to(const Scene& scene, float size) {
   if (!scene.motion) return fit_shadow(scene.vertices, scene.sun.direction, size);
@@ -185,8 +191,7 @@ SceneGpu::SceneGpu(Device& device, std::shared_ptr<const Scene> scene)
       shadow_map_(device, {.name = "shadow map",
                            .extent = {shadow_side(*scene_), shadow_side(*scene_)},
                            .format = vk::Format::eD32Sfloat,
-                           .usage = vk::ImageUsageFlagBits::eDepthStencilAttachment |
-                                    vk::ImageUsageFlagBits::eSampled}),
+                           .usage = shadow_usage(*scene_)}),
       shadow_sampler_(make_sampler(device, {.name = "shadow sampler", .depth_compare = true})),
       scene_layout_(device, "scene set", scene_bindings()),
       material_layout_(device, "material set", material_bindings()),
@@ -200,16 +205,24 @@ SceneGpu::SceneGpu(Device& device, std::shared_ptr<const Scene> scene)
   for (const Material& m : scene_->materials) features_.push_back(features_of(m, *scene_, lights_));
   write_scene_set();
   write_material_sets(device);
-  const bool sun = has_sun(*scene_);
-  context_.run([&](const vk::raii::CommandBuffer& commands) {
-    if (!sun) clear_shadow_map(commands, shadow_map_);
-  });
   if (scene_->motion) moved_vertices_.emplace(device, *scene_, solo_patches_);
-  if (!sun) return;
-  shadows_.emplace(device, *this);
-  context_.run(
-      [&](const vk::raii::CommandBuffer& commands) { shadows_->record(commands, *this, shadow_map_); });
-  if (!scene_->motion) shadows_.reset();
+  draw_shadows();
+}
+
+void SceneGpu::draw_shadows() {
+  using Commands = vk::raii::CommandBuffer;
+  if (!has_sun(*scene_)) {
+    return context_.run([&](const Commands& commands) { clear_shadow_map(commands, shadow_map_); });
+  }
+  if (scene_->motion) {
+    shadows_.emplace(context_, *this, shadow_map_.extent());
+    return context_.run([&](const Commands& commands) { shadows_->record(commands, *this, shadow_map_); });
+  }
+  const ShadowPass pass(context_.device(), *this);
+  context_.run([&](const Commands& commands) {
+    pass.record(commands, *this, shadow_map_, Casters::kAll);
+    use_image(commands, shadow_map_, ImageUse::kSampledInFragment);
+  });
 }
 
 void SceneGpu::record_moves(const vk::raii::CommandBuffer& commands) {

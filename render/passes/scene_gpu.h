@@ -65,6 +65,7 @@ class SceneGpu {
   [[nodiscard]] const Image& shadow_map() const { return shadow_map_; }
 
  private:
+  void draw_shadows();
   void write_scene_set();
   void write_material_sets(const Device& device);
 
@@ -91,7 +92,7 @@ class SceneGpu {
   std::vector<std::uint32_t> features_;
   // Of a scene that moves.
   std::optional<MovedVertices> moved_vertices_;
-  std::optional<ShadowPass> shadows_;  ///< and has a sun
+  std::optional<MovingShadows> shadows_;  ///< and has a sun
 };
 
 }  // namespace atlaswire::render
