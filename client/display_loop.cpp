@@ -114,7 +114,7 @@ class DisplayLoop {
                   .atlas = pair_.picture};
     if (settings_.at_server_pose && pair_.server_pose) {
       sample.camera.pose = pair_.server_pose->pose;
-      sample.scene_time = pair_.times.scene_time;
+      if (sample.scene_time) sample.scene_time = *pair_.times.scene_time + pair_.times.scene_ahead;
     }
     sample.camera = renderer_->measured_camera(sample.camera);
     sample.view = renderer_->draw_undistorted(sample.camera);

@@ -171,6 +171,7 @@ Pair PairMaker::make_pair(const DecodedFrame& picture, const DecodedUpdate& upda
                 .pose_received = server.pose_received,
                 .render_start = server.render_start,
                 .scene_time = moving_ ? std::optional(update.arrived.update.meta.scene_time) : std::nullopt,
+                .scene_ahead = update.arrived.update.meta.scene_ahead,
                 .encode_end = server.encode_end,
                 .video_arrival = picture.arrival,
                 .meta_arrival = update.arrived.update.arrival,

@@ -17,8 +17,8 @@ struct PairTimes {
   std::optional<Time> pose_sampled;  ///< nullopt: the server had no pose of ours
   Time pose_received{};              ///< by the server
   Time render_start{};
-  std::optional<Duration>
-      scene_time;  ///< for how long what moves had been moving then; nullopt: nothing does
+  std::optional<Duration> scene_time;  ///< then, of what moves; nullopt: nothing does
+  Duration scene_ahead{};              ///< so much later things are in the picture
   Time encode_end{};
   Time video_arrival{};       ///< the picture's last packet
   Time meta_arrival{};        ///< the update's last octet

@@ -34,6 +34,7 @@ void DirectCarrier::carry(std::int64_t frame) {
                         .cover = made.cover,
                         .meta = std::move(made.meta),
                         .scene_time = made.scene_time,
+                        .scene_ahead = made.scene_ahead,
                         .motion = std::move(made.motion)};
   contender_->on_update(update);
   proto::AssembledFrame picture;

@@ -142,6 +142,7 @@ Result<void> check(const wire::FrameMeta& m) {
   }
   rules.require(m.cover() >= 0 && m.cover() <= 10 * kSecond, "frame_meta.cover");
   rules.require(is_wire_time(m.scene_time()), "frame_meta.scene_time");
+  rules.require(m.scene_ahead() >= 0 && m.scene_ahead() <= 10 * kSecond, "frame_meta.scene_ahead");
   return rules.result();
 }
 

@@ -169,6 +169,7 @@ FrameMeta from_wire(const wire::FrameMeta& m) {
   const auto bytes = std::as_bytes(std::span(m.meta()));
   out.meta.assign(bytes.begin(), bytes.end());
   out.scene_time = Duration{m.scene_time()};
+  out.scene_ahead = Duration{m.scene_ahead()};
   const auto motion = std::as_bytes(std::span(m.motion()));
   out.motion.assign(motion.begin(), motion.end());
   return out;
@@ -186,6 +187,7 @@ void to_wire(const FrameMeta& m, wire::Envelope& envelope) {
   out.set_cover(m.cover.count());
   out.set_meta(m.meta.data(), m.meta.size());
   out.set_scene_time(m.scene_time.count());
+  out.set_scene_ahead(m.scene_ahead.count());
   if (!m.motion.empty()) out.set_motion(m.motion.data(), m.motion.size());
 }
 

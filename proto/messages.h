@@ -61,10 +61,11 @@ struct FrameMeta {
   FrameId frame{};
   PoseId pose{};  ///< of this client; 0: none had arrived
   StageStamps stamps;
-  Duration cover{};       ///< how far ahead the visible set reaches; 0..10 s
-  ByteBuffer meta;        ///< bytes of the agreed meta codec, may be empty
-  Duration scene_time{};  ///< for how long what moves had been moving; only if the stream has motion
-  ByteBuffer motion;      ///< codec::MotionEncoder's message; only if the stream has motion
+  Duration cover{};        ///< how far ahead the visible set reaches; 0..10 s
+  ByteBuffer meta;         ///< bytes of the agreed meta codec, may be empty
+  Duration scene_time{};   ///< for how long what moves had been moving; only if the stream has motion
+  Duration scene_ahead{};  ///< so much later than that it is shown; 0..10 s
+  ByteBuffer motion;       ///< codec::MotionEncoder's message; only if the stream has motion
 };
 
 /// Server to client instead of a ServerHello; the connection closes after it.

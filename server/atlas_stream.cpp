@@ -66,6 +66,7 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
                                        .scene_seconds = scene_seconds(request),
                                        .hints = request.hints});
   prepared.scene_time = request.scene_time;
+  prepared.scene_ahead = request.scene_ahead;
   if (motion_ && request.scene_time && prepared.rendered.moved != nullptr)
     prepared.moved = motion_->look(*prepared.rendered.moved);
   if (layout_) {
@@ -126,6 +127,7 @@ Result<EncodedFrame> AtlasStream::encode(PreparedFrame prepared) {
   last_meta_bytes_ = frame.meta.size();
   if (prepared.moved) {
     frame.scene_time = *prepared.scene_time;
+    frame.scene_ahead = prepared.scene_ahead;
     if (auto told = motion_->tell(prepared.update, *prepared.moved, frame.motion); !told) return told.error();
   }
   constexpr std::size_t kRest = 1024;  // of the envelope

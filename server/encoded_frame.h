@@ -49,6 +49,7 @@ struct PreparedFrame {
   render::RenderedFrame rendered;  ///< without `change` and `requests`: `update` has them
   codec::MetaUpdate update;
   std::optional<Duration> scene_time;
+  Duration scene_ahead{};
   std::optional<MovedFrame> moved;                 ///< if the scene has motion, and it is to be told
   std::optional<codec::MetaCodecKind> meta_codec;  ///< from this update on
   std::optional<BitRate> bit_rate;
@@ -79,10 +80,11 @@ struct EncodedFrame {
   PoseId pose{};  ///< 0 for a session whose pose it is not
   Duration cover{};
   bool idr = false;
-  ByteBuffer video;       ///< Annex B access unit
-  ByteBuffer meta;        ///< of the stream's meta codec
-  Duration scene_time{};  ///< ViewRequest::scene_time
-  ByteBuffer motion;      ///< where what moves is, behind `meta`; empty: none is told
+  ByteBuffer video;        ///< Annex B access unit
+  ByteBuffer meta;         ///< of the stream's meta codec
+  Duration scene_time{};   ///< ViewRequest::scene_time
+  Duration scene_ahead{};  ///< ViewRequest::scene_ahead
+  ByteBuffer motion;       ///< where what moves is, behind `meta`; empty: none is told
   proto::StageStamps stamps;
   FrameReport report;
 };

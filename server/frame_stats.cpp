@@ -17,7 +17,7 @@ StatsCsv::StatsCsv(const std::string& path) {
            "conversion_ms,render_ms,encoder_wait_ms,encode_ms,session_wait_ms,send_ms,cover_ms,video_bytes,"
            "meta_bytes,visible_patches,added_patches,removed_patches,shaded_texels,bias,allocated_texels,"
            "partial_tail_texels,on_stacks_texels,inaccessible_texels,free_texels,moved_patches,refused_"
-           "patches,atlas_reset,waiting_patches\n";
+           "patches,atlas_reset,waiting_patches,motion_ms,motion_bytes\n";
 }
 
 void StatsCsv::add(SessionId session, const Departure& d) {
@@ -37,8 +37,9 @@ void StatsCsv::add(SessionId session, const Departure& d) {
                        r.added_patches, r.removed_patches, r.shaded_texels, r.bias);
   file_ << fmt::format("{},{},{},{},{},", r.usage.allocated, r.usage.partial_tail, r.usage.on_stacks,
                        r.usage.inaccessible, r.usage.free);
-  file_ << fmt::format("{},{},{},{}\n", r.layout.moved, r.layout.refused, r.layout.reset ? 1 : 0,
+  file_ << fmt::format("{},{},{},{},", r.layout.moved, r.layout.refused, r.layout.reset ? 1 : 0,
                        r.waiting_patches);
+  file_ << fmt::format("{:.3f},{}\n", to_ms(r.render.motion), f.motion.size());
 }
 
 void StatsLine::add(const Departure& d) {
@@ -46,7 +47,7 @@ void StatsLine::add(const Departure& d) {
   ++sums_.frames;
   if (d.dropped) ++sums_.dropped;
   sums_.video_bytes += d.dropped ? 0 : f.video.size();
-  sums_.meta_bytes += f.meta.size();
+  sums_.meta_bytes += f.meta.size() + f.motion.size();
   sums_.visible += f.report.visible_patches;
   const FrameReport& report = f.report;
   sums_.usage.allocated += report.usage.allocated;

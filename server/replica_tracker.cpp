@@ -4,9 +4,7 @@
 #include "render/scene/scene_motion.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdlib>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 
 namespace atlaswire::server {
@@ -19,49 +17,54 @@ PositionGrid scene_grid(const render::Scene& scene, std::uint32_t bits) {
 
 namespace {
 
-std::uint64_t key_of(const GridPosition& p) {
-  return std::uint64_t{p.x} | std::uint64_t{p.y} << 20U | std::uint64_t{p.z} << 40U;
-}
+/// Grid points that somebody has. One that is taken leads to the next along x, then y, then z, so that
+/// however many rest at one point, each finds a free one fast.
+class TakenPoints {
+ public:
+  explicit TakenPoints(std::uint32_t bits) : bits_(bits) {}
 
-/// The nearest grid point that is not in `taken`, in shells of growing cubes.
-GridPosition nearest_free(const GridPosition& at, const std::unordered_set<std::uint64_t>& taken,
-                          std::uint32_t bits) {
-  const std::int64_t side = std::int64_t{1} << bits;
-  for (std::int64_t reach = 1; reach < side; ++reach) {
-    for (std::int64_t z = -reach; z <= reach; ++z) {
-      for (std::int64_t y = -reach; y <= reach; ++y) {
-        const bool inner = std::abs(z) < reach && std::abs(y) < reach;
-        for (std::int64_t x = -reach; x <= reach; x += inner ? 2 * reach : 1) {
-          const std::array<std::int64_t, 3> p{at.x + x, at.y + y, at.z + z};
-          if (std::ranges::any_of(p, [side](std::int64_t c) { return c < 0 || c >= side; })) continue;
-          const GridPosition found{p[0], p[1], p[2]};
-          if (!taken.contains(key_of(found))) return found;
-        }
-      }
+  /// False: somebody has it.
+  bool take(const GridPosition& at) { return next_.emplace(index_of(at), after(index_of(at))).second; }
+  /// The first free one from `at` on, taken.
+  GridPosition take_next(const GridPosition& at) {
+    std::uint64_t found = index_of(at);
+    for (auto step = next_.find(found); step != next_.end(); step = next_.find(found)) {
+      found = step->second;
+      // The next who comes here goes two steps at once.
+      if (const auto second = next_.find(found); second != next_.end()) step->second = second->second;
     }
+    next_.emplace(found, after(found));
+    const std::uint64_t mask = (std::uint64_t{1} << bits_) - 1;
+    return {found & mask, found >> bits_ & mask, found >> 2 * bits_};
   }
-  return at;
-}
+
+ private:
+  [[nodiscard]] std::uint64_t index_of(const GridPosition& p) const {
+    return std::uint64_t{p.x} | std::uint64_t{p.y} << bits_ | std::uint64_t{p.z} << 2 * bits_;
+  }
+  [[nodiscard]] std::uint64_t after(std::uint64_t index) const {
+    return (index + 1) & ((std::uint64_t{1} << 3 * bits_) - 1);
+  }
+
+  std::uint32_t bits_;
+  std::unordered_map<std::uint64_t, std::uint64_t> next_;  ///< by index of a taken one
+};
 
 std::map<std::uint32_t, GridPosition> nudge_apart(const render::Scene& scene, const PositionGrid& grid) {
   std::map<std::uint32_t, GridPosition> nudged;
   if (!scene.motion) return nudged;
-  std::unordered_set<std::uint64_t> taken;
   for (const render::MovingPart& part : scene.motion->parts) {
-    if (!part.mover.deforms) continue;
-    taken.clear();
+    // More points than the grid has could not be told apart anyway.
+    if (!part.mover.deforms || part.positions.count >= std::uint64_t{1} << 3 * grid.bits) continue;
+    TakenPoints taken(grid.bits);
     std::vector<std::uint32_t> later;
     const auto place = [&](std::uint32_t p) {
       return grid.quantize(scene.origin + glm::dvec3(scene.positions[p]));
     };
     for (std::uint32_t p = part.positions.first; p < part.positions.end(); ++p) {
-      if (!taken.insert(key_of(place(p))).second) later.push_back(p);
+      if (!taken.take(place(p))) later.push_back(p);
     }
-    for (const std::uint32_t p : later) {
-      const GridPosition found = nearest_free(place(p), taken, grid.bits);
-      taken.insert(key_of(found));
-      nudged.emplace(p, found);
-    }
+    for (const std::uint32_t p : later) nudged.emplace(p, taken.take_next(place(p)));
   }
   return nudged;
 }

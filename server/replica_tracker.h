@@ -15,7 +15,7 @@ namespace atlaswire::server {
 /// Knows what the clients of a stream know, and turns each frame's layout change into the update that keeps
 /// them level: vertices once, when a patch first needs them; patches added, moved and removed. A grid point
 /// is a vertex's identity, so of points that one mover moves apart and that rest at one grid point all but
-/// the first are told at the nearest free one.
+/// the first are told at the next free one.
 class ReplicaTracker {
  public:
   ReplicaTracker(std::shared_ptr<const render::Scene> scene, std::uint32_t grid_bits);

@@ -181,8 +181,14 @@ void Session::finish(const std::string& reason, Time /*now*/) {
 
 void Session::deliver(const FramePtr& frame, Time now) {
   if (state_ != SessionState::kStreaming) return;
-  proto::FrameMeta meta{frame->frame, frame->pose,       frame->stamps, frame->cover,
-                        frame->meta,  frame->scene_time, frame->motion};
+  proto::FrameMeta meta{.frame = frame->frame,
+                        .pose = frame->pose,
+                        .stamps = frame->stamps,
+                        .cover = frame->cover,
+                        .meta = frame->meta,
+                        .scene_time = frame->scene_time,
+                        .scene_ahead = frame->scene_ahead,
+                        .motion = frame->motion};
   meta.stamps.sent = now;
   reliable_.push(meta, now);
   if (!media_.send(frame, now)) {

@@ -122,6 +122,7 @@ TEST(Messages, FrameMetaComesBackAsSent) {
   m.cover = 150ms;
   m.meta = test::from_hex("00 ff 80 7f");
   m.scene_time = -3s;
+  m.scene_ahead = 45ms;
   m.motion = test::from_hex("b2 01");
   const FrameMeta got = round_trip_of(m);
   EXPECT_EQ(got.frame, m.frame);
@@ -134,6 +135,7 @@ TEST(Messages, FrameMetaComesBackAsSent) {
   EXPECT_EQ(got.cover, m.cover);
   EXPECT_EQ(got.meta, m.meta);
   EXPECT_EQ(got.scene_time, m.scene_time);
+  EXPECT_EQ(got.scene_ahead, m.scene_ahead);
   EXPECT_EQ(got.motion, m.motion);
 }
 
@@ -209,6 +211,18 @@ TEST(Messages, GoldenBytesOfAFrameMeta) {
             "390201000000000000"  // sent, little-endian fixed64
             "4005"
             "4a02abcd");  // cover 5, meta
+}
+
+TEST(Messages, GoldenBytesOfWhatMoves) {
+  const wire::Envelope envelope = parsed(answer());
+  const std::string motion = envelope.server_hello().stream().motion().SerializeAsString();
+  EXPECT_EQ(test::to_hex(std::as_bytes(std::span(motion))),
+            "0a040000e507"          // gaps 0, 0, 997
+            "120403e80701"          // counts 3, 1000, 1
+            "1a03020001"            // kinds: object 1, deforms, object 0
+            "220801020300ffff0f00"  // pivots (1, 2, 3), (0, 2^18 - 1, 0)
+            "29000000000000d03f"    // steps of 0.25 m
+            "3011");                // 17 bits
 }
 
 TEST(Messages, EmphasisComesBackAsSent) {
@@ -342,6 +356,8 @@ TEST(ParseEnvelope, RefusesOtherBadMessages) {
   expect_refused(FrameMeta{}, "frame_meta.stamps", [](wire::Envelope& e) {
     e.mutable_frame_meta()->set_encode_end(std::numeric_limits<std::int64_t>::min());
   });
+  expect_refused(FrameMeta{}, "frame_meta.scene_ahead",
+                 [](wire::Envelope& e) { e.mutable_frame_meta()->set_scene_ahead(-1); });
   expect_refused(FrameMeta{}, "frame_meta.scene_time", [](wire::Envelope& e) {
     e.mutable_frame_meta()->set_scene_time(std::numeric_limits<std::int64_t>::max());
   });
