@@ -1,9 +1,8 @@
-#include "render/scene/moved_scene.h"
-
 #include "render/image/metrics.h"
 #include "render/passes/forward.h"
 #include "render/sas/sas_method.h"
 #include "render/scene/assemble.h"
+#include "render/scene/moved_scene.h"
 #include "render/scene/parade.h"
 #include "tests/render/gpu/gpu_fixture.h"
 
@@ -33,7 +32,8 @@ std::shared_ptr<const Scene> frozen(const std::shared_ptr<const Scene>& scene, d
     const MovingPart& part = moved.parts()[i];
     std::ranges::copy(moved.vertices(i), out->vertices.begin() + part.vertices.first);
     std::ranges::copy(moved.positions(i), out->positions.begin() + part.positions.first);
-    for (std::uint32_t c = part.chunks.first; c < part.chunks.end(); ++c) out->chunks[c].box = moved.boxes()[c];
+    for (std::uint32_t c = part.chunks.first; c < part.chunks.end(); ++c)
+      out->chunks[c].box = moved.boxes()[c];
   }
   return out;
 }
