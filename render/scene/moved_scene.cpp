@@ -4,6 +4,7 @@
 #include "base/patch_layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <utility>
 
@@ -36,6 +37,21 @@ std::vector<DeformedFrames::Triangle> triangles_of(const Scene& scene, const Mov
       triangle[c] = part.points[scene.indices[3 * std::size_t{t} + c] - part.vertices.first];
   }
   return triangles;
+}
+
+/// Nothing is farther from zero than what poses and grids may name.
+constexpr double kFarthest = 1e9;
+
+bool within_reach(const glm::dvec3& p) {
+  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+}
+
+/// A box relative to `origin`, cut to what is within reach.
+Box reachable(const Box& box, const glm::dvec3& origin) {
+  constexpr double kWithRounding = kFarthest * (1 - 1e-6);
+  const glm::vec3 low(glm::dvec3(-kWithRounding) - origin);
+  const glm::vec3 high(glm::dvec3(kWithRounding) - origin);
+  return {glm::clamp(box.low, low, high), glm::clamp(box.high, low, high)};
 }
 
 template <class T>
@@ -103,7 +119,8 @@ void MovedScene::pose_objects() {
   for (std::size_t o = 0; o < objects_.size(); ++o) {
     Object& object = objects_[o];
     // What stays rigid by its nodes may lose it to a file's numbers: then it keeps its last place.
-    const Pose motion = animator_->rigid_motion(scene_->motion->objects[o]).value_or(object.motion);
+    Pose motion = animator_->rigid_motion(scene_->motion->objects[o]).value_or(object.motion);
+    if (!within_reach(object.pivot + motion.position)) motion = object.motion;
     object.moved =
         motion.position != object.motion.position || motion.orientation != object.motion.orientation;
     object.motion = motion;
@@ -138,7 +155,9 @@ void MovedScene::deform(std::size_t part) {
   animator_->positions(p.instance, posed_);
   bool differs = false;
   for (std::size_t i = 0; i < moved.positions.size(); ++i) {
-    const glm::vec3 at(posed_[p.sources[i]] - scene_->origin);
+    const glm::dvec3& posed = posed_[p.sources[i]];
+    const glm::vec3 at =
+        within_reach(posed) ? glm::vec3(posed - scene_->origin) : scene_->positions[p.positions.first + i];
     differs = differs || at != moved.positions[i];
     moved.positions[i] = at;
   }
@@ -192,6 +211,12 @@ void sweep(Scene& scene) {
         grow(scene.box, moved.boxes()[c].high);
       }
     }
+  }
+  // An object that reaches far from its pivot may be carried beyond.
+  scene.box = reachable(scene.box, scene.origin);
+  for (const MovingPart& part : moved.parts()) {
+    for (std::uint32_t c = part.chunks.first; c < part.chunks.end(); ++c)
+      scene.chunks[c].box = reachable(scene.chunks[c].box, scene.origin);
   }
 }
 

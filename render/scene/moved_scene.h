@@ -15,7 +15,8 @@
 namespace atlaswire::render {
 
 /// Where what moves in a scene is at a time, on the host: everything that Scene has of it, moved. Starts at
-/// rest. In a scene where nothing moves it stays so, at no cost. Deterministic.
+/// rest. In a scene where nothing moves it stays so, at no cost. What a file sends beyond 1e9 m stays at
+/// rest, or where it was. Deterministic.
 class MovedScene {
  public:
   explicit MovedScene(std::shared_ptr<const Scene> scene);

@@ -1,14 +1,18 @@
 #include "render/scene/animator.h"
 #include "render/scene/gltf.h"
+#include "render/scene/load.h"
+#include "render/scene/moved_scene.h"
 #include "render/scene/scene_error.h"
 #include "tests/render/scene/gltf_support.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <memory>
 #include <utility>
 
 namespace atlaswire::render {
@@ -85,6 +89,45 @@ TEST(GltfRig, PlaysASkinAndAMorphTarget) {
   const glm::dvec3 expected[] = {{0, 0, 0.5}, {1, 2, 0}, {0, 5, -0.5}};
   for (int i = 0; i < 3; ++i)
     EXPECT_LT(glm::distance(at[static_cast<std::size_t>(i)], expected[i]), 1e-9) << i;
+}
+
+TEST(GltfRig, WhatAFileMovesIsFoundInItsScene) {
+  const TempFile file("dancer.gltf", Dancer{}.text());
+  const auto loaded = load_scene(file.path());
+  ASSERT_TRUE(loaded) << loaded.error().message();
+  const auto scene = std::make_shared<const Scene>(*loaded);
+  ASSERT_TRUE(scene->motion);
+  ASSERT_EQ(scene->motion->parts.size(), 1U);
+  EXPECT_TRUE(scene->motion->parts[0].mover.deforms);
+  MovedScene moved(scene);
+  moved.pose(0.5);
+  std::vector<glm::dvec3> posed;
+  const auto source = Dancer{}.read();
+  Animator animator(*source);
+  animator.pose(0.5);
+  animator.positions(0, posed);
+  for (const glm::vec3& p : moved.positions(0)) {
+    const auto same = [&](const glm::dvec3& q) {
+      return glm::distance(glm::dvec3(p) + scene->origin, q) < 1e-5;
+    };
+    EXPECT_TRUE(std::ranges::any_of(posed, same));
+    EXPECT_LE(p.x, scene->box.high.x + 1e-5F);
+    EXPECT_GE(p.x, scene->box.low.x - 1e-5F);
+  }
+}
+
+TEST(GltfRig, WhatFliesAwayLeavesTheSceneWithinReach) {
+  Dancer dancer;
+  dancer.data[36] = 1e30F;
+  const TempFile file("dancer.gltf", dancer.text());
+  const auto loaded = load_scene(file.path());
+  ASSERT_TRUE(loaded) << loaded.error().message();
+  const glm::dvec3 high = loaded->origin + glm::dvec3(loaded->box.high);
+  const glm::dvec3 low = loaded->origin + glm::dvec3(loaded->box.low);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LE(high[axis], 1e9);
+    EXPECT_GE(low[axis], -1e9);
+  }
 }
 
 TEST(GltfRig, LeavesOutChannelsThatItDoesNotKnow) {
