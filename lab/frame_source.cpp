@@ -38,7 +38,11 @@ server::ViewRequest FrameSource::request_for(const Pose& head, const FrameTiming
   request.cover = timing.shown_until - timing.posed;
   const Duration middle = (timing.shown_from + timing.shown_until) / 2;
   request.scene_time = timing.made;
-  if (settings_.foresee_motion) request.scene_ahead = std::max(middle - timing.made, Duration::zero());
+  if (settings_.foresee_motion) {
+    // The middle of the moments at which the client displays, not of the time between two frames.
+    const Duration displayed = middle - from_seconds(0.5 / settings_.client_hz);
+    request.scene_ahead = std::max(std::max(displayed, timing.shown_from) - timing.made, Duration::zero());
+  }
   if (is_warp_) {
     if (settings_.predict) request.camera.pose = extrapolate(head, middle - timing.posed);
     if (settings_.stereo) request.camera.pose = render::eye_pose(request.camera.pose, -settings_.ipd / 2);
