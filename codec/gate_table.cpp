@@ -45,14 +45,24 @@ void GateTable::open(const Gate& gate) {
     unused_.pop_back();
   }
   links_[number] = {.gate = gate};
-  index_.insert(key_of(gate.from, gate.to), number);
   link(leaving_, &Linked::leaving, gate.from, number);
   link(arriving_, &Linked::arriving, gate.to, number);
+  index_overflow(gate.from);
+}
+
+/// A new gate pushes one at most out of those that are looked through.
+void GateTable::index_overflow(std::uint32_t vertex) {
+  std::uint32_t number = first_leaving(vertex);
+  for (std::uint32_t looked = 0; looked < kFewLeaving && number != kNone; ++looked)
+    number = next_leaving(number);
+  if (number == kNone || links_[number].indexed) return;
+  links_[number].indexed = true;
+  index_.insert(key_of(vertex, links_[number].gate.to), number);
 }
 
 void GateTable::close(std::uint32_t number) {
   const Gate gate = links_[number].gate;
-  index_.erase(key_of(gate.from, gate.to));
+  if (links_[number].indexed) index_.erase(key_of(gate.from, gate.to));
   unlink(leaving_, &Linked::leaving, gate.from, number);
   unlink(arriving_, &Linked::arriving, gate.to, number);
   unused_.push_back(number);

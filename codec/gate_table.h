@@ -71,6 +71,7 @@ class GateTable {
     Gate gate;
     Link leaving;
     Link arriving;
+    bool indexed = false;
   };
   using Heads = std::vector<std::uint32_t>;
 
@@ -80,9 +81,12 @@ class GateTable {
   static std::uint32_t first_of(const Heads& heads, std::uint32_t vertex) {
     return vertex < heads.size() ? heads[vertex] : kNone;
   }
-  static constexpr std::uint32_t kFewLeaving = 6;  ///< gates looked through before the index is asked
+  /// Gates that leave a vertex and are looked through; those behind them in the list are in the index, for
+  /// they may be many.
+  static constexpr std::uint32_t kFewLeaving = 6;
 
   void open(const Gate& gate);
+  void index_overflow(std::uint32_t vertex);
   void close(std::uint32_t number);
   void link(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number);
   void unlink(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number);

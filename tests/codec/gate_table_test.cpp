@@ -76,6 +76,39 @@ TEST(GateTable, HasOneGateWhereManyPatchesMeet) {
   EXPECT_EQ(gates.gate(gates.find(1, 0)).behind_from, 2U);
 }
 
+/// A fan about vertex 0 with gaps, so that its gates are many, closed in another order than opened in.
+TEST(GateTable, FindsEveryGateOfACrowdedVertex) {
+  constexpr std::uint32_t kSpokes = 64;
+  GateTable gates(1);
+  std::vector<bool> open(kSpokes, false);
+  const auto check = [&](std::uint32_t step) {
+    for (std::uint32_t s = 0; s < kSpokes; ++s) {
+      const std::uint32_t number = gates.find(0, 1 + s);
+      ASSERT_EQ(number != GateTable::kNone, open[s]) << "spoke " << s << ", step " << step;
+      if (open[s]) {
+        ASSERT_EQ(gates.gate(number).to, 1 + s);
+      }
+    }
+  };
+  for (std::uint32_t s = 0; s < kSpokes; ++s) {
+    gates.add(outline({1 + s, 0, 100 + s}));
+    open[s] = true;
+    check(s);
+  }
+  for (std::uint32_t i = 0; i < kSpokes; ++i) {
+    const std::uint32_t closed = i * 37 % kSpokes;
+    gates.add(outline({0, 1 + closed, 200 + closed}));
+    open[closed] = false;
+    check(i);
+    if (i % 3 != 0) continue;
+    const std::uint32_t again = i * 19 % kSpokes;
+    if (open[again]) continue;
+    gates.add(outline({1 + again, 0, 300 + again}));
+    open[again] = true;
+    check(i);
+  }
+}
+
 TEST(GateTable, LeavesOutEdgesOfNoLength) {
   GateTable gates(1);
   gates.add(outline({7, 7, 7}));
