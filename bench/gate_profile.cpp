@@ -47,7 +47,7 @@ class CountingCoder {
     if (in(m.calm_group, m.flip)) return GateTopic::kPresence;
     if (in(m.gap, m.new_patches)) return GateTopic::kIds;
     if (in(m.triangles, m.turn)) return GateTopic::kGrouping;
-    if (in(m.gate)) return GateTopic::kGates;
+    if (in(m.gate, m.attached)) return GateTopic::kGates;
     if (in(m.corner)) return GateTopic::kCorners;
     if (in(m.position)) return GateTopic::kResiduals;
     if (in(m.draw)) return GateTopic::kClasses;

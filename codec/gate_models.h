@@ -52,6 +52,8 @@ struct GateModels {
   std::array<AdaptiveUnsigned, 3> gap;       ///< by the gap before
   std::array<AdaptiveTree<2>, 4> triangles;  ///< by those of the nearest patch
   std::array<AdaptiveTree<3>, 7> draw;       ///< by that of the nearest patch
+  std::array<AdaptiveBit, 3 * 8>
+      attached;  ///< by how far off in number the patch before is, and whether the three before were
   std::array<AdaptiveBit, (kNear + 1) * 4 * 5 * 3 * 3>
       gate;  ///< by nearness, how often refused, edge, its patch's triangles, own triangles
   std::array<AdaptiveTree<3>, 3 * 3 * 5> turn;  ///< by own triangles, those of the gate's patch, its edge

@@ -201,9 +201,11 @@ void GateScript<Coder>::report(MetaUpdate& effect, std::uint32_t first_vertex) {
   effect.removed = removed_;
   for (const std::uint32_t i : hidden_) effect.removed.push_back(residents.presence(i).id);
   if (!removed_.empty()) std::ranges::sort(effect.removed);
+  effect.vertices.reserve(state_->vertices.size() - first_vertex);
   for (std::uint32_t v = first_vertex; v < state_->vertices.size(); ++v) {
     effect.vertices.push_back({VertexId{v}, state_->vertices.position(v)});
   }
+  effect.added.reserve(placements_.size() + arrivals_.size());
   const auto add = [&](PatchId id, const PatchShape& shape, const Block& block) {
     AddedPatch added{.id = id, .triangles = shape.triangles, .draw = shape.draw, .block = block};
     std::ranges::transform(shape.corners, added.corners.begin(), [](std::uint32_t v) { return VertexId{v}; });

@@ -2,6 +2,7 @@
 
 #include "base/grid.h"
 #include "codec/corner_script.h"
+#include "codec/gate_offers.h"
 #include "codec/gate_state.h"
 #include "codec/level_script.h"
 #include "codec/meta_update.h"
@@ -46,33 +47,29 @@ class ShapeScript {
 
  private:
   using Offset = GridOffset;
-  struct Near {
-    PatchShape shape;
-    Block block;
-    bool known = false;
-  };
   struct Attached {
     const Gate* gate = nullptr;  ///< null: to none
     std::uint32_t triangles = 1;
     std::uint32_t edge = 0;
   };
   static constexpr std::uint32_t kNone = VertexTable::kNone;
-  static constexpr std::uint32_t kMostBack = 128;    ///< new patches looked back at for gates
-  static constexpr std::uint32_t kMostOffered = 64;  ///< gates for one patch, about
 
   bool code_id(const WantedPatch* wanted, NewResident& patch);
   void look_around(std::span<const NewResident> before);
   bool code_class(const WantedPatch* wanted, PatchShape& shape);
   Attached code_gate(std::span<const NewResident> before, const PatchShape& shape, const WantedPatch* wanted);
+  std::uint32_t fitting_gate(GateOffers offers, const WantedPatch& wanted) const;
   bool code_corners(const Attached& attached, const WantedPatch* wanted, PatchShape& shape);
-  ExpectedCorner expect(const Attached& attached, const PatchShape& shape, std::uint32_t turn,
-                        std::uint32_t step);
+  ExpectedCorner expect(const Gate* gate, const PatchShape& shape, std::uint32_t turn, std::uint32_t step);
+  const Gate* gate_between(std::uint32_t from, std::uint32_t to) const {
+    const std::uint32_t number = state_->gates.find(from, to);
+    return number == GateTable::kNone ? nullptr : &state_->gates.gate(number);
+  }
   void expect_attached(const Gate& gate, const PatchShape& shape, std::uint32_t turn, std::uint32_t step,
                        ExpectedCorner& expected);
   void expect_alone(const PatchShape& shape, std::uint32_t step, ExpectedCorner& expected);
 
   [[nodiscard]] Offset at(std::uint32_t vertex) const { return Offset(state_->vertices.position(vertex)); }
-  static Outline outline(const PatchShape& shape) { return {shape.corners, corner_count(shape.triangles)}; }
   bool fail(MetaError why) {
     error_ = why;
     return false;
@@ -83,8 +80,9 @@ class ShapeScript {
   GateModels* models_;
   const MetaLimits* limits_;
   CornerScript<Coder> corners_;
-  std::array<Near, GateModels::kNear> near_{};
+  NearPatches near_{};
   std::uint32_t gap_class_ = 2;
+  std::uint32_t attached_flow_ = 7;  ///< whether each of the three patches before was, the last in bit 0
   std::uint32_t next_id_ = 0;        ///< the least that may come
   std::uint32_t next_resident_ = 0;  ///< index of the first resident not below it
   MetaError error_{};
@@ -106,7 +104,7 @@ std::optional<NewResident> ShapeScript<Coder>::code(std::span<const NewResident>
     return std::nullopt;
   }
   patch.block = *block;
-  state_->gates.add(outline(patch.shape));
+  state_->gates.add(outline_of(patch.shape));
   state_->mix(value(patch.id));
   for (std::uint32_t i = 0; i < corner_count(patch.shape.triangles); ++i) state_->mix(patch.shape.corners[i]);
   return patch;
@@ -165,7 +163,7 @@ void ShapeScript<Coder>::look_around(std::span<const NewResident> before) {
 
 template <class Coder>
 bool ShapeScript<Coder>::code_class(const WantedPatch* wanted, PatchShape& shape) {
-  const Near& next = near_[0];
+  const NearPatch& next = near_[0];
   const std::uint32_t triangles = models_->triangles[next.known ? next.shape.triangles : 0].code(
       *coder_, wanted ? wanted->triangles : 0U);
   const auto number_of = [](const PatchClass& draw) {
@@ -180,51 +178,43 @@ bool ShapeScript<Coder>::code_class(const WantedPatch* wanted, PatchShape& shape
   return true;
 }
 
-/// Offers the open gates of patches near in number, then those of earlier new patches, until one is taken.
+/// Whether the patch is attached to any of the open gates on offer, then which: one by one, until one is
+/// taken.
 template <class Coder>
 typename ShapeScript<Coder>::Attached ShapeScript<Coder>::code_gate(std::span<const NewResident> before,
                                                                     const PatchShape& shape,
                                                                     const WantedPatch* wanted) {
-  const std::uint32_t corners = corner_count(shape.triangles);
-  std::array<std::uint32_t, kMaxPatchCorners> slots{};
-  for (std::uint32_t i = 0; wanted != nullptr && i < corners; ++i) {
-    slots[i] = state_->vertices.find(wanted->positions[i]);
-  }
-  const auto fits = [&](const Gate& gate) {
-    for (std::uint32_t i = 0; i < corners; ++i) {
-      if (slots[i] == gate.from && slots[(i + 1) % corners] == gate.to) return true;
-    }
-    return false;
-  };
-  Attached attached;
-  std::uint32_t offered = 0;
-  const auto offer_gates = [&](std::uint32_t n, const PatchShape& near) {
-    const Outline other = outline(near);
-    const std::uint32_t kind = near.triangles - 1U;
-    for (std::uint32_t edge = 0; edge < other.count; ++edge) {
-      const std::uint32_t number = state_->gates.find(other.at(edge + 1), other.at(edge));
-      if (number == GateTable::kNone) continue;
-      const Gate& gate = state_->gates.gate(number);
-      const std::uint32_t rank = n * (Gate::kMostRefused + 1U) + gate.refused;
-      AdaptiveBit& model = models_->gate[((rank * 5 + edge) * 3 + kind) * 3 + shape.triangles - 1];
-      ++offered;
-      if (coder_->code(model, wanted != nullptr && fits(gate))) {
-        attached = {&gate, kind + 1, edge};
-        return true;
-      }
-      state_->gates.refuse(number);
-    }
-    return false;
-  };
-  for (std::uint32_t n = 0; n < near_.size(); ++n) {
-    if (near_[n].known && offer_gates(n, near_[n].shape)) return attached;
-  }
-  for (std::size_t left = before.size(), looked = 0;
-       left > near_.size() / 2 && looked < kMostBack && offered < kMostOffered; ++looked) {
-    --left;
-    if (offer_gates(GateModels::kNear, before[left - near_.size() / 2].shape)) return attached;
+  const GateOffers all(state_->gates, near_, before);
+  GateOffer offer;
+  const std::uint32_t fitting = wanted == nullptr ? GateTable::kNone : fitting_gate(all, *wanted);
+  const bool attaches =
+      coder_->code(models_->attached[gap_class_ * 8 + attached_flow_], fitting != GateTable::kNone);
+  attached_flow_ = (attached_flow_ * 2 + static_cast<std::uint32_t>(attaches)) & 7U;
+  if (!attaches) return {};
+  for (GateOffers offers = all; offers.next(offer);) {
+    const Gate& gate = state_->gates.gate(offer.gate);
+    const std::uint32_t rank = offer.nearness * (Gate::kMostRefused + 1U) + gate.refused;
+    AdaptiveBit& model =
+        models_->gate[((rank * 5 + offer.edge) * 3 + offer.triangles - 1) * 3 + shape.triangles - 1];
+    if (coder_->code(model, offer.gate == fitting)) return {&gate, offer.triangles, offer.edge};
+    state_->gates.refuse(offer.gate);
   }
   return {};
+}
+
+/// The first gate on offer that an edge of the patch fills, or kNone.
+template <class Coder>
+std::uint32_t ShapeScript<Coder>::fitting_gate(GateOffers offers, const WantedPatch& wanted) const {
+  const std::uint32_t corners = corner_count(wanted.triangles);
+  std::array<std::uint32_t, kMaxPatchCorners> vertices{};
+  for (std::uint32_t i = 0; i < corners; ++i) vertices[i] = state_->vertices.find(wanted.positions[i]);
+  for (GateOffer offer; offers.next(offer);) {
+    const Gate& gate = state_->gates.gate(offer.gate);
+    for (std::uint32_t i = 0; i < corners; ++i) {
+      if (vertices[i] == gate.from && vertices[(i + 1) % corners] == gate.to) return offer.gate;
+    }
+  }
+  return GateTable::kNone;
 }
 
 template <class Coder>
@@ -251,9 +241,11 @@ bool ShapeScript<Coder>::code_corners(const Attached& attached, const WantedPatc
     taken[count++] = shape.corners[turn] = gate.from;
     taken[count++] = shape.corners[(turn + 1) % corners] = gate.to;
   }
-  // `attached.gate` stays where it is: gates change only when the patch is whole.
+  // Gates stay where they are: they change only when the patch is whole.
+  const Gate* gate = attached.gate;
   for (std::uint32_t step = count; step < corners; ++step) {
-    const ExpectedCorner expected = expect(attached, shape, turn, step);
+    if (step == 2 && gate == nullptr) gate = gate_between(taken[0], taken[1]);
+    const ExpectedCorner expected = expect(gate, shape, turn, step);
     const std::uint32_t vertex =
         corners_.code(expected, std::span(taken).first(count), position_of(turn + step));
     if (vertex == kNone) return fail(corners_.error());
@@ -264,14 +256,14 @@ bool ShapeScript<Coder>::code_corners(const Attached& attached, const WantedPatc
 
 /// Where corner `turn + step` would be if the surface went on as it did.
 template <class Coder>
-ExpectedCorner ShapeScript<Coder>::expect(const Attached& attached, const PatchShape& shape,
-                                          std::uint32_t turn, std::uint32_t step) {
+ExpectedCorner ShapeScript<Coder>::expect(const Gate* gate, const PatchShape& shape, std::uint32_t turn,
+                                          std::uint32_t step) {
   const std::uint32_t corners = corner_count(shape.triangles);
   ExpectedCorner expected;
   if (step > 0) expected.previous = shape.corners[(turn + step - 1) % corners];
   if (step == corners - 1) expected.following = shape.corners[turn];
-  if (attached.gate != nullptr) {
-    expect_attached(*attached.gate, shape, turn, step, expected);
+  if (gate != nullptr) {
+    expect_attached(*gate, shape, turn, step, expected);
   } else {
     expect_alone(shape, step, expected);
   }
@@ -326,8 +318,8 @@ void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& sha
 template <class Coder>
 void ShapeScript<Coder>::expect_alone(const PatchShape& shape, std::uint32_t step, ExpectedCorner& expected) {
   const std::uint32_t corners = corner_count(shape.triangles);
-  const Near& next = near_[0];
-  const Outline other = outline(next.shape);
+  const NearPatch& next = near_[0];
+  const Outline other = outline_of(next.shape);
   expected.scale = step == 0 ? 18 : 19;
   if (step == 0) {
     if (!next.known) return;

@@ -82,9 +82,9 @@ TEST(GateMetaGolden, BytesStayAsTheyAre) {
     encoder.encode(update, out);
     return hex(out);
   };
-  EXPECT_EQ(bytes_of(first_update()), "A300000007082BC0906B1B9FA54C5225F9F53BDD20DAD04E846BCBB3CF");
-  EXPECT_EQ(bytes_of(second_update()), "A2AAC6DA3FF35C4923FB028D");
-  EXPECT_EQ(bytes_of(third_update()), "A2E1FEE2185A30183D831AC55D144D2F7E");
+  EXPECT_EQ(bytes_of(first_update()), "A300000007082BBCC8358DD548D4AE59C6A70584A814A423327EB750920C");
+  EXPECT_EQ(bytes_of(second_update()), "A2AAC6DA45E72074A65E2E2D");
+  EXPECT_EQ(bytes_of(third_update()), "A2E1FEE21F24DD5248F226AF0417B377");
 }
 
 TEST(GateMetaGolden, UpdatesComeThrough) {
