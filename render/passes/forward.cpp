@@ -18,12 +18,11 @@ gpu_layout::DrawConstants draw_constants(const RelativeCamera& camera) {
 }
 
 std::vector<std::uint32_t> count_triangles(const Scene& scene) {
-  std::vector<std::uint32_t> first;
-  first.reserve(scene.patches.size());
+  std::vector<std::uint32_t> first(scene.patches.size());
   std::uint32_t triangle = 0;
-  for (const Patch& patch : scene.patches) {
-    first.push_back(triangle);
-    triangle += patch.triangles;
+  for (const std::uint32_t patch : scene.drawn) {
+    first[patch] = triangle;
+    triangle += scene.patches[patch].triangles;
   }
   return first;
 }
@@ -110,7 +109,7 @@ void ForwardPass::draw_scene(const vk::raii::CommandBuffer& commands, const Came
       solid.emplace_back(glm::dot(away, away), i);
       continue;
     }
-    for (std::uint32_t p = chunk.first_patch; p < chunk.first_patch + chunk.patch_count; ++p) {
+    for (const std::uint32_t p : patches_of(scene, chunk)) {
       blended.push_back({distance2_of(scene_->moved(), scene.patches[p], eye), p, i});
     }
   }

@@ -108,6 +108,7 @@ LightTable make_light_table(const Scene& scene) {
     table.lights.push_back(constants_of(scene.lights[light]));
     table.spots = table.spots || is_spot(scene.lights[light]);
   }
+  table.of_patch.resize(scene.patches.size());
   std::vector<std::uint32_t> list;
   for (const Chunk& chunk : scene.chunks) {
     const auto reaching = std::span(scene.light_lists).subspan(chunk.first_light, chunk.light_count);
@@ -117,14 +118,14 @@ LightTable make_light_table(const Scene& scene) {
     }
     std::uint32_t last = append(table.lists, list, 0);
     table.of_chunk.push_back(last);
-    for (std::uint32_t p = chunk.first_patch; p < chunk.first_patch + chunk.patch_count; ++p) {
+    for (const std::uint32_t p : patches_of(scene, chunk)) {
       list.clear();
       const PatchReach patch = reach_of(scene, scene.patches[p]);
       for (const std::uint32_t light : reaching) {
         if (place[light] != kDropped && reaches(scene.lights[light], patch)) list.push_back(place[light]);
       }
       last = append(table.lists, list, last);
-      table.of_patch.push_back(last);
+      table.of_patch[p] = last;
     }
   }
   return table;

@@ -112,10 +112,9 @@ void VisibilityPass::find_known_chunks() {
   if (!occlusion_) return;
   for (std::size_t i = 0; i < scene.chunks.size(); ++i) {
     const Chunk& chunk = scene.chunks[i];
-    const auto seen = words.subspan(chunk.first_patch, chunk.patch_count);
     // Blended chunks are drawn last and hide nothing: always tested.
     known_[i] = id_class(scene.materials[chunk.material]) != IdClass::kBlended &&
-                std::ranges::any_of(seen, [](std::uint32_t word) { return word != 0; });
+                std::ranges::any_of(patches_of(scene, chunk), [&](std::uint32_t p) { return words[p] != 0; });
   }
 }
 

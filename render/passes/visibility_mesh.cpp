@@ -79,23 +79,23 @@ void append_patch(VertexStream<Vertex>& stream, std::vector<std::uint32_t>& indi
   }
 }
 
-/// Notes which vertices were made for which moving part: a part's patches follow each other, and nobody else
-/// uses their sources.
+/// Notes which vertices were made for which moving part: its patches are drawn at the places that are their
+/// numbers, in some order, and nobody else uses their sources.
 class PartLister {
  public:
   PartLister(const Scene& scene, IdMesh& mesh) : scene_(&scene), mesh_(&mesh) {
     if (scene.motion) parts_ = scene.motion->parts;
   }
 
-  void begin_patch(std::uint32_t patch) {
-    if (at_ == parts_.size() || patch != parts_[at_].mover.first_patch) return;
+  void begin_patch(std::uint32_t drawn, const Patch& patch) {
+    if (at_ == parts_.size() || drawn != parts_[at_].mover.first_patch) return;
     IdMeshPart& part = mesh_->parts.emplace_back();
-    part.cut = id_class(scene_->materials[scene_->patches[patch].material]) != IdClass::kOpaque;
+    part.cut = id_class(scene_->materials[patch.material]) != IdClass::kOpaque;
     part.first = static_cast<std::uint32_t>(part.cut ? mesh_->cut.size() : mesh_->solid.size());
   }
-  void end_patch(std::uint32_t patch, const std::vector<std::uint32_t>& solid,
+  void end_patch(std::uint32_t drawn, const std::vector<std::uint32_t>& solid,
                  const std::vector<std::uint32_t>& cut) {
-    if (at_ == parts_.size() || patch + 1 != parts_[at_].mover.end()) return;
+    if (at_ == parts_.size() || drawn + 1 != parts_[at_].mover.end()) return;
     IdMeshPart& part = mesh_->parts.back();
     const std::uint32_t first = part.cut ? parts_[at_].vertices.first : parts_[at_].positions.first;
     for (const std::uint32_t source : std::span(part.cut ? cut : solid).subspan(part.first))
@@ -118,9 +118,10 @@ IdMesh make_id_mesh(const Scene& scene) {
   VertexStream<IdVertex> solid(mesh.solid, scene.positions.size());
   VertexStream<CutVertex> cut(mesh.cut, scene.vertices.size());
   PartLister parts(scene, mesh);
-  for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+  for (std::uint32_t drawn = 0; drawn < scene.drawn.size(); ++drawn) {
+    const std::uint32_t i = scene.drawn[drawn];
     const Patch& patch = scene.patches[i];
-    parts.begin_patch(i);
+    parts.begin_patch(drawn, patch);
     if (id_class(scene.materials[patch.material]) == IdClass::kOpaque) {
       const auto source = [&](std::uint8_t corner) { return value(patch.positions[corner]); };
       const auto make = [&](std::uint8_t corner) { return IdVertex{scene.positions[source(corner)], kNone}; };
@@ -133,7 +134,7 @@ IdMesh make_id_mesh(const Scene& scene) {
       };
       append_patch(cut, mesh.indices, i, patch.triangles, source, make);
     }
-    parts.end_patch(i, solid.sources(), cut.sources());
+    parts.end_patch(drawn, solid.sources(), cut.sources());
   }
   return mesh;
 }

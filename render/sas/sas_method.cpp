@@ -60,8 +60,7 @@ LevelSettings level_settings(const MethodSettings& s) {
 std::vector<std::uint32_t> chunks_of_patches(const Scene& scene) {
   std::vector<std::uint32_t> chunk_of(scene.patches.size());
   for (std::uint32_t i = 0; i < scene.chunks.size(); ++i) {
-    const auto first = chunk_of.begin() + scene.chunks[i].first_patch;
-    std::fill(first, first + scene.chunks[i].patch_count, i);
+    for (const std::uint32_t patch : patches_of(scene, scene.chunks[i])) chunk_of[patch] = i;
   }
   return chunk_of;
 }

@@ -19,18 +19,20 @@ namespace atlaswire::render {
 
 namespace {
 
-/// Vertices in order of first use by patches, so that neighbours in memory are neighbours in space. Gives
-/// their origins, if anything moves.
+/// Patches in order of their numbers, and vertices in order of first use as they are drawn, so that
+/// neighbours in memory are neighbours in space. Gives the vertices' origins, if anything moves.
 std::vector<VertexOrigin> renumber_vertices(const FlatMesh& flat, const std::vector<TriangleGroup>& groups,
                                             const std::vector<OrderedGroup>& sorted, Scene& scene) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> numbers(flat.vertices.size(), kUnused);
   std::vector<VertexOrigin> origins;
   scene.vertices.reserve(flat.vertices.size());
-  scene.patches.reserve(sorted.size());
+  scene.patches.resize(sorted.size());
+  scene.drawn.reserve(sorted.size());
   for (const OrderedGroup& s : sorted) {
     const TriangleGroup& group = groups[s.group];
-    Patch patch;
+    scene.drawn.push_back(s.patch);
+    Patch& patch = scene.patches[s.patch];
     patch.material = s.material;
     patch.object = flat.objects[group.triangle];
     patch.triangles = group.count;
@@ -43,7 +45,6 @@ std::vector<VertexOrigin> renumber_vertices(const FlatMesh& flat, const std::vec
       }
       patch.vertices[c] = number;
     }
-    scene.patches.push_back(patch);
   }
   const std::vector<VertexId> welded = weld(scene.vertices, origins, scene.positions);
   for (Patch& patch : scene.patches) {
@@ -53,7 +54,7 @@ std::vector<VertexOrigin> renumber_vertices(const FlatMesh& flat, const std::vec
 }
 
 void list_triangles(Scene& scene) {
-  for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+  for (const std::uint32_t p : scene.drawn) {
     const Patch& patch = scene.patches[p];
     for (std::uint32_t t = 0; t < patch.triangles; ++t) {
       for (const std::uint8_t corner : patch_triangle(patch.triangles, t))
@@ -70,8 +71,8 @@ void grow(Box& box, const glm::vec3& p) {
 
 void list_chunks(const std::vector<OrderedGroup>& ordered, Scene& scene) {
   std::uint32_t triangle = 0;
-  for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
-    const Patch& patch = scene.patches[p];
+  for (std::uint32_t p = 0; p < scene.drawn.size(); ++p) {
+    const Patch& patch = scene.patches[scene.drawn[p]];
     if (ordered[p].chunk == scene.chunks.size()) {
       Chunk chunk;
       const glm::vec3 first = scene.vertices[patch.vertices[0]].position;

@@ -18,6 +18,7 @@ struct Item {
   std::uint16_t material = 0;
   std::uint32_t instance = 0;  ///< 1 + the one that moves it, or 0
   std::uint32_t group = 0;
+  std::uint32_t patch = 0;
   glm::vec3 middle{0.0F};
 };
 
@@ -34,7 +35,7 @@ std::vector<Item> items_of(const FlatMesh& flat, const std::vector<TriangleGroup
     const std::uint16_t material = flat.materials[group.triangle];
     items.push_back(
         {class_rank(materials[material].draw), group.count, material,
-         flat.instances.empty() ? 0 : flat.instances[group.triangle], g,
+         flat.instances.empty() ? 0 : flat.instances[group.triangle], g, 0,
          0.5F * (flat.vertices[group.corners[0]].position + flat.vertices[group.corners[2]].position)});
   }
   return items;
@@ -51,10 +52,21 @@ int longest_axis(std::span<const Item> items) {
   return side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
 }
 
+/// Numbers the patches of a run, from `first` on.
+void number(std::span<Item> run, std::uint32_t first, WalkOrder& walk) {
+  std::vector<std::uint32_t> groups;
+  groups.reserve(run.size());
+  for (const Item& item : run) groups.push_back(item.group);
+  walk.arrange(groups);
+  std::ranges::sort(run, {}, &Item::group);
+  for (const std::uint32_t group : groups) {
+    std::ranges::lower_bound(run, group, {}, &Item::group)->patch = first++;
+  }
+}
+
 class Cutter {
  public:
-  Cutter(std::uint32_t most_triangles, WalkOrder& walk, std::vector<OrderedGroup>& out)
-      : most_(most_triangles), walk_(walk), out_(out) {}
+  Cutter(std::uint32_t most_triangles, std::vector<OrderedGroup>& out) : most_(most_triangles), out_(out) {}
 
   void cut(std::span<Item> items) {
     std::uint64_t triangles = 0;
@@ -78,17 +90,13 @@ class Cutter {
   }
 
  private:
-  void emit(std::span<const Item> items) {
-    numbers_.clear();
-    for (const Item& item : items) numbers_.push_back(item.group);
-    walk_.arrange(numbers_);
-    for (const std::uint32_t group : numbers_) out_.push_back({group, chunks_, items.front().material});
+  void emit(std::span<Item> items) {
+    std::ranges::sort(items, {}, &Item::patch);
+    for (const Item& item : items) out_.push_back({item.group, item.patch, chunks_, item.material});
     ++chunks_;
   }
 
   std::uint32_t most_;
-  WalkOrder& walk_;
-  std::vector<std::uint32_t> numbers_;
   std::uint32_t chunks_ = 0;
   std::vector<OrderedGroup>& out_;
 };
@@ -109,13 +117,15 @@ std::vector<OrderedGroup> order_by_chunk(const FlatMesh& flat, const std::vector
   positions.reserve(flat.vertices.size());
   for (const ShadingVertex& v : flat.vertices) positions.push_back(v.position);
   WalkOrder walk(positions, groups);
-  Cutter cutter(most_triangles, walk, out);
+  Cutter cutter(most_triangles, out);
   for (std::size_t first = 0; first < items.size();) {
     std::size_t last = first + 1;
     while (last < items.size() && items[last].material == items[first].material &&
            items[last].instance == items[first].instance)
       ++last;
-    cutter.cut(std::span(items).subspan(first, last - first));
+    const std::span run = std::span(items).subspan(first, last - first);
+    number(run, static_cast<std::uint32_t>(first), walk);
+    cutter.cut(run);
     first = last;
   }
   return out;

@@ -20,9 +20,10 @@ void grow(Box& box, const glm::vec3& p) {
 Box box_of(const Scene& scene, const MovingPart& part, const Chunk& chunk,
            std::span<const glm::vec3> positions) {
   const auto at = [&](VertexId id) { return positions[value(id) - part.positions.first]; };
-  const glm::vec3 first = at(scene.patches[chunk.first_patch].positions[0]);
+  const std::span<const std::uint32_t> patches = patches_of(scene, chunk);
+  const glm::vec3 first = at(scene.patches[patches.front()].positions[0]);
   Box box{first, first};
-  for (std::uint32_t p = chunk.first_patch; p < chunk.first_patch + chunk.patch_count; ++p) {
+  for (const std::uint32_t p : patches) {
     for (const VertexId id : scene.patches[p].positions) grow(box, at(id));
   }
   return box;

@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -95,8 +96,8 @@ struct Box {
 /// Neighbouring patches of one material, and of one instance if they move: unit of culling and of light
 /// lists.
 struct Chunk {
-  Box box;  ///< of what moves: all places where it ever is
-  std::uint32_t first_patch = 0;
+  Box box;                        ///< of what moves: all places where it ever is
+  std::uint32_t first_patch = 0;  ///< into Scene::drawn
   std::uint32_t patch_count = 0;
   std::uint32_t first_triangle = 0;  ///< into Scene::indices / 3
   std::uint32_t triangle_count = 0;
@@ -123,8 +124,8 @@ struct Sun {
 
 /// A scene ready for rendering: instances flattened into scene space, triangles grouped into patches,
 /// patches numbered so that each material's lie together (opaque, then masked, then blended), each moving
-/// instance's and each chunk's together within it. What moves is at rest here (moved_scene.h). Immutable once
-/// made.
+/// instance's together within it, and neighbours follow each other (walk_order.h); drawn chunk by chunk. What
+/// moves is at rest here (moved_scene.h). Immutable once made.
 struct Scene {
   std::string name;
   glm::dvec3 origin{0.0};  ///< centre of the box at rest; float positions are relative to it
@@ -132,9 +133,11 @@ struct Scene {
   std::vector<ShadingVertex> vertices;
   std::vector<glm::vec3> positions;  ///< welded: one per distinct point that moves as one, relative to origin
   std::vector<Patch> patches;        ///< by PatchId
-  std::vector<std::uint32_t> indices;         ///< 3 a triangle into `vertices`, triangles in patch order
+  std::vector<std::uint32_t> drawn;  ///< patches as they are drawn: a permutation, within each run of one
+                                     ///< material and moving instance
+  std::vector<std::uint32_t> indices;         ///< 3 a triangle into `vertices`, in the order of `drawn`
   std::vector<std::uint32_t> triangle_patch;  ///< patch of each triangle in `indices`
-  std::vector<Chunk> chunks;                  ///< in patch order, covering all
+  std::vector<Chunk> chunks;                  ///< in the order of `drawn`, covering all
   std::vector<Material> materials;
   std::vector<SceneObject> objects;
   std::vector<Texture> textures;
@@ -149,5 +152,10 @@ struct Scene {
   SceneRequirements requirements;
   std::shared_ptr<const SceneMotion> motion;  ///< null: nothing moves
 };
+
+/// The numbers of a chunk's patches, ascending.
+inline std::span<const std::uint32_t> patches_of(const Scene& scene, const Chunk& chunk) {
+  return std::span(scene.drawn).subspan(chunk.first_patch, chunk.patch_count);
+}
 
 }  // namespace atlaswire::render

@@ -61,6 +61,7 @@ void SceneBuilder::add(const Pending& p) {
   }
   ++chunk.patch_count;
   chunk.triangle_count += triangles;
+  scene.drawn.push_back(static_cast<std::uint32_t>(scene.patches.size()));
   scene.patches.push_back(patch);
 }
 

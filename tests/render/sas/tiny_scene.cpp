@@ -38,6 +38,7 @@ PatchId TinyScene::patch(const std::vector<glm::vec3>& corners) {
   const auto triangles = static_cast<std::uint32_t>(corners.size() - 2);
   const auto id = static_cast<std::uint32_t>(s.patches.size());
   Chunk& chunk = s.chunks.back();
+  s.drawn.push_back(id);
   Patch& patch = s.patches.emplace_back();
   patch.material = chunk.material;
   patch.triangles = static_cast<std::uint8_t>(triangles);

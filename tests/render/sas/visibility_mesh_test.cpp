@@ -65,6 +65,7 @@ TEST(IdMesh, DoublesVerticesOnlyWherePatchesOutnumberThem) {
     }
     scene->indices.insert(scene->indices.end(), std::begin(corners), std::end(corners));
     scene->triangle_patch.push_back(i);
+    scene->drawn.push_back(i);
   }
   const IdMesh mesh = make_id_mesh(*scene);
   expect_same_triangles(*scene, mesh);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -34,15 +35,20 @@ TEST(Assemble, ChunksCoverAllPatchesAndTrianglesInOrder) {
   ASSERT_TRUE(scene.has_value());
   std::uint32_t patch = 0;
   std::uint32_t triangle = 0;
+  std::vector<bool> drawn(scene->patches.size(), false);
   for (const Chunk& chunk : scene->chunks) {
     ASSERT_EQ(chunk.first_patch, patch);
     ASSERT_EQ(chunk.first_triangle, triangle);
     ASSERT_LE(chunk.triangle_count, AssembleSettings{}.chunk_triangles);
-    for (std::uint32_t p = patch; p < patch + chunk.patch_count; ++p)
+    const auto patches = patches_of(*scene, chunk);
+    ASSERT_TRUE(std::ranges::is_sorted(patches));
+    for (const std::uint32_t p : patches) {
       ASSERT_EQ(scene->patches[p].material, chunk.material);
+      ASSERT_FALSE(drawn[p]) << "patch " << p;
+      drawn[p] = true;
+    }
     for (std::uint32_t t = triangle; t < triangle + chunk.triangle_count; ++t) {
-      ASSERT_GE(scene->triangle_patch[t], chunk.first_patch);
-      ASSERT_LT(scene->triangle_patch[t], chunk.first_patch + chunk.patch_count);
+      ASSERT_TRUE(std::ranges::binary_search(patches, scene->triangle_patch[t]));
       for (std::size_t c = 0; c < 3; ++c) {
         const glm::vec3 p = scene->vertices[scene->indices[t * 3 + c]].position;
         ASSERT_TRUE(glm::all(glm::greaterThanEqual(p, chunk.box.low)) &&

@@ -54,12 +54,20 @@ TEST(SceneMotion, EachPartHasWhatItUsesForItself) {
       EXPECT_EQ(part.positions.first + part.points[vertex - part.vertices.first], point);
     }
   }
-  for (const Chunk& chunk : scene->chunks)
-    EXPECT_EQ(owner_of(chunk.first_patch), owner_of(chunk.first_patch + chunk.patch_count - 1));
-  for (const MovingPart& part : parts) {
-    EXPECT_EQ(scene->triangle_patch[part.triangles.first], part.mover.first_patch);
-    EXPECT_EQ(scene->triangle_patch[part.triangles.end() - 1], part.mover.end() - 1);
-    EXPECT_EQ(scene->chunks[part.chunks.first].first_patch, part.mover.first_patch);
+  for (std::uint32_t c = 0; c < scene->chunks.size(); ++c) {
+    for (const std::uint32_t p : patches_of(*scene, scene->chunks[c])) {
+      const std::uint32_t owner = owner_of(p);
+      EXPECT_EQ(owner, owner_of(scene->drawn[scene->chunks[c].first_patch]));
+      if (owner == 0) continue;
+      const NumberRange& chunks = parts[owner - 1].chunks;
+      EXPECT_TRUE(c >= chunks.first && c < chunks.end());
+    }
+  }
+  for (std::uint32_t t = 0; t < scene->triangle_patch.size(); ++t) {
+    const std::uint32_t owner = owner_of(scene->triangle_patch[t]);
+    if (owner == 0) continue;
+    const NumberRange& triangles = parts[owner - 1].triangles;
+    EXPECT_TRUE(t >= triangles.first && t < triangles.end());
   }
 }
 
