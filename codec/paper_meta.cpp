@@ -2,10 +2,10 @@
 
 #include "base/assert.h"
 #include "codec/bit_io.h"
+#include "codec/golomb_column.h"
 #include "codec/octree.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -17,7 +17,6 @@ constexpr std::uint8_t kForm = 0xB1;       // "atlaswire meta", the paper's form
 constexpr std::uint8_t kResetForm = 0xB2;  // the same, everything forgotten first
 constexpr std::uint32_t kMostRaw = 30;     // new vertices that are sent raw
 constexpr std::uint32_t kCountOrder = 5;
-constexpr std::uint32_t kOrderBits = 4;  // of a column's own code order
 
 // Fewest bits an entry of each list takes: what bounds a list's count by the bits left.
 constexpr std::uint32_t kMinRemoved = 1;
@@ -42,48 +41,9 @@ std::vector<const Entry*> ascending(const std::vector<Entry>& list, IdOf id_of) 
   return order;
 }
 
-/// One attribute of a list: its code order, then its numbers.
-class Column {
- public:
-  void add(std::uint32_t number) { numbers_.push_back(number); }
-  void add_signed(std::int32_t number) { numbers_.push_back(zigzag(number)); }
-
-  void write(BitWriter& out) const {
-    if (numbers_.empty()) return;
-    std::uint32_t best = 0;
-    std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
-    for (std::uint32_t order = 0; order < (1U << kOrderBits); ++order) {
-      std::uint64_t bits = 0;
-      for (const std::uint32_t number : numbers_) bits += BitWriter::golomb_length(number, order);
-      if (bits >= fewest) continue;
-      fewest = bits;
-      best = order;
-    }
-    out.write(best, kOrderBits);
-    for (const std::uint32_t number : numbers_) out.write_golomb(number, best);
-  }
-
- private:
-  std::vector<std::uint32_t> numbers_;
-};
-
-/// Ids that ascend: each less the one before, less one.
-class IdColumn {
- public:
-  void add(std::uint32_t id) {
-    column_.add(id - expected_);
-    expected_ = id + 1;
-  }
-  void write(BitWriter& out) const { column_.write(out); }
-
- private:
-  Column column_;
-  std::uint32_t expected_ = 0;
-};
-
 void write_blocks(const std::vector<const Block*>& blocks, BitWriter& out) {
   const auto column = [&](auto number_of) {
-    Column numbers;
+    GolombColumn numbers;
     std::uint32_t before = 0;
     for (const Block* block : blocks) {
       numbers.add_signed(difference(number_of(*block), before));
@@ -100,7 +60,7 @@ void write_blocks(const std::vector<const Block*>& blocks, BitWriter& out) {
 
 void write_removed(const std::vector<PatchId>& removed, BitWriter& out) {
   out.write_golomb(static_cast<std::uint32_t>(removed.size()), kCountOrder);
-  IdColumn ids;
+  GolombIds ids;
   for (const PatchId* id : ascending(removed, [](PatchId p) { return value(p); })) ids.add(value(*id));
   ids.write(out);
 }
@@ -109,7 +69,7 @@ void write_vertices(const std::vector<NewVertex>& vertices, std::uint32_t grid_b
   out.write_golomb(static_cast<std::uint32_t>(vertices.size()), kCountOrder);
   auto order = ascending(vertices, [](const NewVertex& v) { return value(v.id); });
   if (vertices.size() <= kMostRaw) {
-    IdColumn ids;
+    GolombIds ids;
     for (const NewVertex* v : order) ids.add(value(v->id));
     ids.write(out);
     for (const NewVertex* v : order) {
@@ -118,7 +78,7 @@ void write_vertices(const std::vector<NewVertex>& vertices, std::uint32_t grid_b
     return;
   }
   std::ranges::stable_sort(order, {}, [](const NewVertex* v) { return octree_order(v->position); });
-  Column ids;
+  GolombColumn ids;
   std::uint32_t before = 0;
   std::vector<GridPosition> points;
   for (const NewVertex* v : order) {
@@ -132,10 +92,10 @@ void write_vertices(const std::vector<NewVertex>& vertices, std::uint32_t grid_b
 
 void write_added(const std::vector<AddedPatch>& added, BitWriter& out) {
   out.write_golomb(static_cast<std::uint32_t>(added.size()), kCountOrder);
-  IdColumn ids;
-  Column classes;
-  Column first_corners;
-  Column other_corners;
+  GolombIds ids;
+  GolombColumn classes;
+  GolombColumn first_corners;
+  GolombColumn other_corners;
   std::vector<const Block*> blocks;
   std::uint32_t class_before = 0;
   std::uint32_t first_before = 0;
@@ -159,7 +119,7 @@ void write_added(const std::vector<AddedPatch>& added, BitWriter& out) {
 
 void write_moved(const std::vector<MovedPatch>& moved, BitWriter& out) {
   out.write_golomb(static_cast<std::uint32_t>(moved.size()), kCountOrder);
-  IdColumn ids;
+  GolombIds ids;
   std::vector<const Block*> blocks;
   for (const MovedPatch* patch : ascending(moved, [](const MovedPatch& p) { return value(p.id); })) {
     ids.add(value(patch->id));
@@ -202,7 +162,7 @@ class Reader {
   template <class Take>
   bool read_column(std::uint32_t count, Take take) {
     if (count == 0) return true;
-    const std::uint32_t order = in_.read(kOrderBits);
+    const std::uint32_t order = in_.read(kColumnOrderBits);
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t number = in_.read_golomb(order);
       if (!whole() || !take(i, number)) return false;
