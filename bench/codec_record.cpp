@@ -33,6 +33,7 @@ struct Options {
   std::string whole;
   std::uint32_t new_patches = 0;
   bool requests = false;
+  std::uint32_t hold_frames = render::MethodSettings{}.hold_frames;
 };
 
 constexpr double kTurnRate = 1.5707963267948966;  // radians a second
@@ -77,6 +78,29 @@ void record_whole(const Options& options) {
   bench::write_recording(recording, options.out);
 }
 
+/// Tells a stream's motion once more, to write down what was told.
+class MotionRecorder {
+ public:
+  MotionRecorder(std::shared_ptr<const render::Scene> scene, const PositionGrid& grid)
+      : teller_(std::move(scene), grid) {
+    const proto::MotionDescription& told = teller_.description();
+    motion_.settings = {grid, {.step = told.translation_step, .rotation_bits = told.rotation_bits}};
+    motion_.movers = told.movers;
+  }
+  void add(const server::PreparedFrame& frame) {
+    ByteBuffer message;
+    teller_.tell(frame.update, frame.moved.value(), message).value();
+    const codec::MotionTargets told = teller_.told();
+    motion_.frames.push_back(
+        {{told.positions.begin(), told.positions.end()}, {told.transforms.begin(), told.transforms.end()}});
+  }
+  [[nodiscard]] const bench::RecordedMotion& motion() const { return motion_; }
+
+ private:
+  server::MotionTeller teller_;
+  bench::RecordedMotion motion_;
+};
+
 void record(const Options& options) {
   auto scene = std::make_shared<const render::Scene>(render::load_scene(options.scene).value());
   const render::CameraPath path = render::CameraPath::load(options.path).value();
@@ -87,11 +111,17 @@ void record(const Options& options) {
   settings.meta_codec = options.requests ? codec::MetaCodecKind::kMirror : codec::MetaCodecKind::kGate;
   settings.max_fps = options.rate;
   settings.render.most_new_patches = options.new_patches;
+  settings.render.hold_frames = options.hold_frames;
   settings.video.encoder = "raw";
   settings.video.intra_interval = 5;
   server::AtlasStream stream(settings, scene, render::make_method("sas", *device, scene, settings.render));
   bench::MetaRecording recording{
       .limits = server::ReplicaTracker(scene, options.grid_bits).limits(settings.render.atlas)};
+  if (const auto memory = stream.memory()) {
+    recording.memory = {memory->superblock_log2, memory->min_block_log2, memory->high_water};
+  }
+  std::optional<MotionRecorder> motion;
+  if (scene->motion) motion.emplace(scene, stream.grid());
   server::ViewRequest request;
   request.camera.extent = {options.width, options.height};
   request.cover = from_seconds(0.05);
@@ -101,11 +131,13 @@ void record(const Options& options) {
     request.camera.pose = pose_at(path, options, now);
     set_velocities_from(pose_at(path, options, now - step), request.camera.pose, step);
     request.restart = frame == 0;
+    if (motion) request.scene_time = now;
     server::PreparedFrame prepared = stream.render(request);
     recording.updates.push_back(prepared.update);
-    recording.updates.back().cue.reset();  // a codec that needs one gets it when it is measured
+    if (motion) motion->add(prepared);
     stream.encode(std::move(prepared)).value();
   }
+  if (motion) recording.motion = motion->motion();
   bench::write_recording(recording, options.out);
 }
 
@@ -113,7 +145,7 @@ void record(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Records a stream's meta updates");
+  CLI::App app("Records a stream's meta updates and, of a scene that moves, where its movers are to be");
   app.add_option("--scene", options.scene, "Built-in name or glTF file");
   app.add_option("--path", options.path, "Built-in name or CSV file");
   app.add_option("--out", options.out, "File to write");
@@ -130,6 +162,8 @@ int main(int argc, char** argv) {
                  "Stand where the path is at this second, and turn by 90 degrees a second");
   app.add_option("--grid-bits", options.grid_bits, "0: suited to the scene");
   app.add_option("--new-patches", options.new_patches, "That a frame may show for the first time; 0: all");
+  app.add_option("--hold-frames", options.hold_frames, "That a patch stays after it was last seen")
+      ->capture_default_str();
   app.add_flag("--requests", options.requests, "What patches ask for instead of the blocks they got");
   CLI11_PARSE(app, argc, argv);
   try {

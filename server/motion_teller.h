@@ -36,6 +36,8 @@ class MotionTeller {
   /// clients show motion, in order. One thread. What has left the grid's margins is told at their edge.
   /// Errors: codec::MotionError, of an object that flew away.
   Result<void> tell(const codec::MetaUpdate& update, const MovedFrame& moved, ByteBuffer& out);
+  /// What the last message told, in its scope's order; valid until the next.
+  [[nodiscard]] codec::MotionTargets told() const { return {false, positions_, transforms_}; }
 
  private:
   [[nodiscard]] glm::dvec3 place_of(VertexId id, const MovedFrame& moved) const;
