@@ -1,6 +1,8 @@
 #pragma once
 
 #include "bench/increment.h"
+#include "bench/meta_recording.h"
+#include "bench/motion_rival.h"
 #include "codec/meta_update.h"
 
 #include <cstddef>
@@ -17,6 +19,8 @@ struct UpdateCost {
   std::size_t blocks = 0;
 };
 
+using MotionRivals = std::vector<std::unique_ptr<MotionRival>>;
+
 /// One codec in the comparison: both ends of one stream.
 class CodecRival {
  public:
@@ -28,6 +32,14 @@ class CodecRival {
   [[nodiscard]] virtual UpdateCost cost() const = 0;
   /// Decodes the last update. Throws std::runtime_error where that fails.
   virtual void decode() = 0;
+  /// What was decoded, until `place`; of a codec of meshes alone what was told.
+  [[nodiscard]] virtual const codec::MetaUpdate& heard() const = 0;
+  /// Throws std::runtime_error unless what was decoded is what was told. Once an update, before `place`.
+  virtual void check() = 0;
+  /// What a receiver does besides to know where blocks lie. Throws std::runtime_error where that fails.
+  virtual void place() {}
+  /// How it tells motion; of several it has the one that takes the fewest bytes.
+  [[nodiscard]] virtual MotionRivals motions(const RecordedMotion& motion) const = 0;
 };
 
 /// Structs as a program holds them: a vertex is an id and three floats, a corner and a patch an id of 32
@@ -40,8 +52,9 @@ std::unique_ptr<CodecRival> make_draco_rival();
 /// meshoptimizer's vertex and index codecs, each increment a mesh, and the columns, through zstd-19 with
 /// history; the grouping of faces not counted either.
 std::unique_ptr<CodecRival> make_meshopt_rival();
-/// One of the stream's own forms.
-std::unique_ptr<CodecRival> make_own_rival(codec::MetaCodecKind kind, const codec::MetaLimits& limits);
+/// One of the stream's own forms. kMirror decodes and runs the atlas's memory, which must come to the layout
+/// that the server had.
+std::unique_ptr<CodecRival> make_own_rival(codec::MetaCodecKind kind, const MetaRecording& recording);
 
 /// Octets of a mesh at Draco's smallest.
 std::size_t draco_size(const std::vector<GridPosition>& positions, const std::vector<std::uint32_t>& indices);

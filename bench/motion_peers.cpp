@@ -178,15 +178,31 @@ class DifferencePeer final : public MotionPeer {
 
 }  // namespace
 
+std::unique_ptr<MotionPeer> make_motion_peer(MotionPacking packing, int order, std::uint32_t width) {
+  AW_ASSERT(order >= 0 && order <= 2 && (packing != MotionPacking::kDraco || width == 3));
+  std::unique_ptr<Packer> packer;
+  switch (packing) {
+    case MotionPacking::kZstd:
+      packer = std::make_unique<ZstdPacker>();
+      break;
+    case MotionPacking::kMeshopt:
+      packer = std::make_unique<MeshoptPacker>(width);
+      break;
+    case MotionPacking::kDraco:
+      packer = std::make_unique<DracoPacker>();
+      break;
+  }
+  return std::make_unique<DifferencePeer>(order, std::move(packer));
+}
+
 std::vector<std::unique_ptr<MotionPeer>> make_motion_peers(std::uint32_t width) {
   std::vector<std::unique_ptr<MotionPeer>> peers;
   for (const int order : {1, 2}) {
-    peers.push_back(std::make_unique<DifferencePeer>(order, std::make_unique<ZstdPacker>()));
-    peers.push_back(std::make_unique<DifferencePeer>(order, std::make_unique<MeshoptPacker>(width)));
+    peers.push_back(make_motion_peer(MotionPacking::kZstd, order, width));
+    peers.push_back(make_motion_peer(MotionPacking::kMeshopt, order, width));
   }
   if (width == 3) {
-    for (const int order : {0, 2})
-      peers.push_back(std::make_unique<DifferencePeer>(order, std::make_unique<DracoPacker>()));
+    for (const int order : {0, 2}) peers.push_back(make_motion_peer(MotionPacking::kDraco, order, width));
   }
   return peers;
 }

@@ -21,6 +21,14 @@ class MotionPeer {
   virtual void decode(ByteView bytes, std::span<std::int32_t> numbers) = 0;
 };
 
+/// What packs the differences: zstd (which remembers earlier frames), meshoptimizer's vertex codec and zstd,
+/// or a Draco point cloud in order, of rows of 3.
+enum class MotionPacking { kZstd, kMeshopt, kDraco };
+
+/// Differences in time of an order, packed. Rows may be added behind those before; they start from zeros.
+/// `order` 0: the numbers as they are; 1 and 2: less what the last one or two frames let expect.
+std::unique_ptr<MotionPeer> make_motion_peer(MotionPacking packing, int order, std::uint32_t width);
+
 /// Every peer: differences in time of first and second order with zstd (which remembers earlier frames),
 /// those with meshoptimizer's vertex codec and zstd, and (for width 3) Draco point clouds in order, of
 /// positions and of second-order differences.

@@ -1,6 +1,8 @@
 // Naive structs, Draco, meshoptimizer: what ours is held against.
 #include "bench/codec_rival.h"
+#include "bench/peer_motion.h"
 #include "bench/side_columns.h"
+#include "bench/update_check.h"
 #include "bench/zstd_stream.h"
 
 #include <draco/compression/decode.h>
@@ -19,10 +21,32 @@ void demand(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(what);
 }
 
-class NaiveRival final : public CodecRival {
+/// A codec that knows of no patches.
+class PeerRival : public CodecRival {
+ public:
+  void encode(const Increment& increment) final {
+    told_ = &increment;
+    tell(increment);
+  }
+  [[nodiscard]] const codec::MetaUpdate& heard() const final { return *told_->update; }
+
+ protected:
+  virtual void tell(const Increment& increment) = 0;
+  void demand_triangles(const std::vector<GridPosition>& positions,
+                        const std::vector<std::uint32_t>& indices) const {
+    demand(indices.size() == told_->indices.size() &&
+               triangle_set_hash(positions, indices) == triangle_set_hash(told_->positions, told_->indices),
+           "other triangles were decoded");
+  }
+
+ private:
+  const Increment* told_ = nullptr;
+};
+
+class NaiveRival final : public PeerRival {
  public:
   [[nodiscard]] std::string name() const override { return "naive structs"; }
-  void encode(const Increment& increment) override {
+  void tell(const Increment& increment) override {
     mesh_.clear();
     blocks_.clear();
     const codec::MetaUpdate& update = *increment.update;
@@ -49,6 +73,12 @@ class NaiveRival final : public CodecRival {
   void decode() override {
     copy_ = mesh_;
     copy_.insert(copy_.end(), blocks_.begin(), blocks_.end());
+  }
+  void check() override { demand(copy_.size() == mesh_.size() + blocks_.size(), "naive structs differ"); }
+  [[nodiscard]] MotionRivals motions(const RecordedMotion&) const override {
+    MotionRivals rivals;
+    rivals.push_back(make_naive_motion());
+    return rivals;
   }
 
  private:
@@ -111,10 +141,10 @@ void encode_draco(const std::vector<GridPosition>& positions, const std::vector<
   demand(encoder.EncodeMeshToBuffer(mesh, &out).ok(), "Draco would not encode");
 }
 
-class DracoRival final : public CodecRival {
+class DracoRival final : public PeerRival {
  public:
   [[nodiscard]] std::string name() const override { return "Draco"; }
-  void encode(const Increment& increment) override {
+  void tell(const Increment& increment) override {
     mesh_.Clear();
     if (!increment.indices.empty()) encode_draco(increment.positions, increment.indices, mesh_);
     write_removals(increment, removals_.begin());
@@ -126,22 +156,50 @@ class DracoRival final : public CodecRival {
   void decode() override {
     removals_.decode();
     blocks_.decode();
+    decoded_.reset();
     if (mesh_.size() == 0) return;
     draco::DecoderBuffer bytes;
     bytes.Init(mesh_.data(), mesh_.size());
-    demand(draco::Decoder().DecodeMeshFromBuffer(&bytes).ok(), "Draco would not decode");
+    auto decoded = draco::Decoder().DecodeMeshFromBuffer(&bytes);
+    demand(decoded.ok(), "Draco would not decode");
+    decoded_ = std::move(decoded).value();
+  }
+  void check() override {
+    std::vector<GridPosition> positions;
+    std::vector<std::uint32_t> indices;
+    if (decoded_) take_out(*decoded_, positions, indices);
+    demand_triangles(positions, indices);
+  }
+  [[nodiscard]] MotionRivals motions(const RecordedMotion&) const override {
+    MotionRivals rivals;
+    for (const int order : {0, 1, 2}) rivals.push_back(make_peer_motion(MotionPacking::kDraco, order));
+    return rivals;
   }
 
  private:
+  static void take_out(const draco::Mesh& mesh, std::vector<GridPosition>& positions,
+                       std::vector<std::uint32_t>& indices) {
+    const draco::PointAttribute* attribute = mesh.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+    for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
+      std::array<std::int32_t, 3> at{};
+      attribute->GetValue(attribute->mapped_index(draco::PointIndex(i)), at.data());
+      positions.emplace_back(at[0], at[1], at[2]);
+    }
+    for (std::uint32_t f = 0; f < mesh.num_faces(); ++f) {
+      for (std::uint32_t c = 0; c < 3; ++c) indices.push_back(mesh.face(draco::FaceIndex(f))[c].value());
+    }
+  }
+
   draco::EncoderBuffer mesh_;
+  std::unique_ptr<draco::Mesh> decoded_;
   Column removals_;
   Column blocks_;
 };
 
-class MeshoptRival final : public CodecRival {
+class MeshoptRival final : public PeerRival {
  public:
   [[nodiscard]] std::string name() const override { return "meshoptimizer + zstd"; }
-  void encode(const Increment& increment) override {
+  void tell(const Increment& increment) override {
     ByteBuffer& mesh = mesh_.begin();
     write_removals(increment, mesh);
     removals_size_ = mesh.size();
@@ -166,6 +224,16 @@ class MeshoptRival final : public CodecRival {
                meshopt_decodeVertexBuffer(decoded_vertices_.data(), vertices_.size(), sizeof(Vertex),
                                           octets(vertices), vertices.size()) == 0,
            "meshoptimizer would not decode");
+  }
+  void check() override {
+    std::vector<GridPosition> positions;
+    for (const Vertex& v : decoded_vertices_) positions.emplace_back(v[0], v[1], v[2]);
+    demand_triangles(positions, indices_.empty() ? indices_ : decoded_indices_);
+  }
+  [[nodiscard]] MotionRivals motions(const RecordedMotion&) const override {
+    MotionRivals rivals;
+    for (const int order : {1, 2}) rivals.push_back(make_peer_motion(MotionPacking::kMeshopt, order));
+    return rivals;
   }
 
  private:
