@@ -56,7 +56,8 @@ PreparedFrame AtlasStream::render(const ViewRequest& request) {
   prepared.bit_rate = request.bit_rate;
   prepared.stamps.pose_received = request.pose_received;
   prepared.intra = schedule_.next();
-  const bool restart = request.restart || !std::exchange(told_, true);
+  const bool first = !std::exchange(told_, true);
+  const bool restart = request.restart || first;
   if (restart) told_as_ = request.meta_codec.value_or(preferred_meta_codec_);
   prepared.rendered = method_->render({.frame = next_frame_,
                                        .camera = request.camera,

@@ -136,6 +136,14 @@ TEST_F(AtlasStreamTest, ASceneThatRestsIsStreamedAlikeWhateverTheTime) {
   }
 }
 
+TEST_F(AtlasStreamTest, AFirstFrameThatIsAskedToTellAllDoesSoOnce) {
+  const auto stream = make_stream();
+  request.restart = true;
+  EXPECT_TRUE(stream->render(request).update.reset);
+  request.restart = false;
+  EXPECT_FALSE(stream->render(request).update.reset);
+}
+
 TEST_F(AtlasStreamTest, RestartTellsANewcomerAll) {
   const auto stream = make_stream();
   const ReplicaTracker limits(scene, settings.grid_bits);
