@@ -18,7 +18,6 @@ struct Item {
   std::uint16_t material = 0;
   std::uint32_t instance = 0;  ///< 1 + the one that moves it, or 0
   std::uint32_t group = 0;
-  std::uint32_t patch = 0;
   glm::vec3 middle{0.0F};
 };
 
@@ -35,7 +34,7 @@ std::vector<Item> items_of(const FlatMesh& flat, const std::vector<TriangleGroup
     const std::uint16_t material = flat.materials[group.triangle];
     items.push_back(
         {class_rank(materials[material].draw), group.count, material,
-         flat.instances.empty() ? 0 : flat.instances[group.triangle], g, 0,
+         flat.instances.empty() ? 0 : flat.instances[group.triangle], g,
          0.5F * (flat.vertices[group.corners[0]].position + flat.vertices[group.corners[2]].position)});
   }
   return items;
@@ -52,17 +51,43 @@ int longest_axis(std::span<const Item> items) {
   return side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
 }
 
-/// Numbers the patches of a run, from `first` on.
-void number(std::span<Item> run, std::uint32_t first, WalkOrder& walk) {
-  std::vector<std::uint32_t> groups;
-  groups.reserve(run.size());
-  for (const Item& item : run) groups.push_back(item.group);
-  walk.arrange(groups);
-  std::ranges::sort(run, {}, &Item::group);
-  for (const std::uint32_t group : groups) {
-    std::ranges::lower_bound(run, group, {}, &Item::group)->patch = first++;
+/// Numbers patches by walks over the surface. Parts that do not touch are walked object by object, and within
+/// an object in the order of chunks, so that near ones follow each other.
+class Numberer {
+ public:
+  Numberer(const FlatMesh& flat, const std::vector<TriangleGroup>& groups)
+      : flat_(flat), groups_(groups), walk_(positions_of(flat), groups), numbers_(groups.size()) {}
+
+  /// Numbers a run from `first` on, and puts it in order within its chunks.
+  void number(std::span<OrderedGroup> run, std::uint32_t first) {
+    part_.clear();
+    for (const OrderedGroup& o : run) part_.push_back(o.group);
+    std::ranges::stable_sort(part_, {}, [&](std::uint32_t group) { return object_of(group); });
+    walk_.arrange(part_);
+    for (const std::uint32_t group : part_) numbers_[group] = first++;
+    for (OrderedGroup& o : run) o.patch = numbers_[o.group];
+    std::ranges::sort(run, [](const OrderedGroup& x, const OrderedGroup& y) {
+      return std::tie(x.chunk, x.patch) < std::tie(y.chunk, y.patch);
+    });
   }
-}
+
+ private:
+  static std::vector<glm::vec3> positions_of(const FlatMesh& flat) {
+    std::vector<glm::vec3> positions;
+    positions.reserve(flat.vertices.size());
+    for (const ShadingVertex& v : flat.vertices) positions.push_back(v.position);
+    return positions;
+  }
+  [[nodiscard]] std::uint32_t object_of(std::uint32_t group) const {
+    return flat_.objects[groups_[group].triangle];
+  }
+
+  const FlatMesh& flat_;
+  const std::vector<TriangleGroup>& groups_;
+  WalkOrder walk_;
+  std::vector<std::uint32_t> part_;
+  std::vector<std::uint32_t> numbers_;  ///< by group
+};
 
 class Cutter {
  public:
@@ -91,8 +116,8 @@ class Cutter {
 
  private:
   void emit(std::span<Item> items) {
-    std::ranges::sort(items, {}, &Item::patch);
-    for (const Item& item : items) out_.push_back({item.group, item.patch, chunks_, item.material});
+    std::ranges::sort(items, {}, &Item::group);
+    for (const Item& item : items) out_.push_back({item.group, 0, chunks_, item.material});
     ++chunks_;
   }
 
@@ -113,19 +138,15 @@ std::vector<OrderedGroup> order_by_chunk(const FlatMesh& flat, const std::vector
   std::sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return key(a) < key(b); });
   std::vector<OrderedGroup> out;
   out.reserve(items.size());
-  std::vector<glm::vec3> positions;
-  positions.reserve(flat.vertices.size());
-  for (const ShadingVertex& v : flat.vertices) positions.push_back(v.position);
-  WalkOrder walk(positions, groups);
+  Numberer numberer(flat, groups);
   Cutter cutter(most_triangles, out);
   for (std::size_t first = 0; first < items.size();) {
     std::size_t last = first + 1;
     while (last < items.size() && items[last].material == items[first].material &&
            items[last].instance == items[first].instance)
       ++last;
-    const std::span run = std::span(items).subspan(first, last - first);
-    number(run, static_cast<std::uint32_t>(first), walk);
-    cutter.cut(run);
+    cutter.cut(std::span(items).subspan(first, last - first));
+    numberer.number(std::span(out).subspan(first), static_cast<std::uint32_t>(first));
     first = last;
   }
   return out;

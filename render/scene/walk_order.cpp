@@ -66,9 +66,7 @@ WalkOrder::WalkOrder(std::span<const glm::vec3> positions, std::span<const Trian
 
 void WalkOrder::arrange(std::span<std::uint32_t> part) {
   // What a walk reaches is all that hangs together, so that no start changes what another touches.
-  std::ranges::sort(part, [&](std::uint32_t a, std::uint32_t b) {
-    return behind_[a] != behind_[b] ? behind_[a] > behind_[b] : a < b;
-  });
+  std::ranges::stable_sort(part, [&](std::uint32_t a, std::uint32_t b) { return behind_[a] > behind_[b]; });
   for (const std::uint32_t group : part) where_[group] = Where::kInPart;
   walk_.clear();
   for (const std::uint32_t start : part) {

@@ -11,8 +11,9 @@ namespace atlaswire::render {
 
 /// An order of patches in which each lies beside one of the few before it where the surface allows: numbers
 /// close together then mean neighbours, which the geometry codec predicts by (docs/PROTOCOL.md, "Shapes").
-/// Part after part of the surface is walked: each begins where it touches what was walked most, goes to the
-/// neighbour that does, and where there is none back to the latest patch that has one. Neighbours share an
+/// Part after part of the surface is walked: each begins where it touches what was walked most (of equals at
+/// the first given), goes to the neighbour that does, and where there is none back to the latest patch that
+/// has one. Neighbours share an
 /// edge by position, whatever seams run there. Deterministic; near linear time.
 class WalkOrder {
  public:
