@@ -139,6 +139,7 @@ void StreamRunner::time_scene(Time now, ViewRequest& request) {
 }
 
 void StreamRunner::render_loop(const std::stop_token& stop) {
+  std::optional<std::string> failure;
   try {
     maker_ = callbacks_.make();
     const Duration interval = interval_of(settings_.max_fps);
@@ -160,14 +161,16 @@ void StreamRunner::render_loop(const std::stop_token& stop) {
       changed_.notify_all();
     }
   } catch (const std::exception& e) {
-    fail(fmt::format("rendering failed: {}", e.what()));
+    failure = fmt::format("rendering failed: {}", e.what());
   }
+  // What was rendered before is whole, and leaves before the stream's end is told.
   std::unique_lock lock(mutex_);
   rendering_over_ = true;
   changed_.notify_all();
   changed_.wait(lock, [&] { return in_encoder_ == 0; });
   const bool unharmed = maker_ && !failed_;
   lock.unlock();
+  if (failure) return fail(*failure);
   if (unharmed && callbacks_.give_back) callbacks_.give_back(std::move(maker_));
 }
 
