@@ -20,7 +20,7 @@ bool has_shape(const GateState& state, const PatchShape& shape, const WantedPatc
 }
 
 bool holds(const ResidentSet& residents, std::uint32_t index, PatchId id) {
-  return index < residents.size() && residents.presence(index).id == id;
+  return index < residents.size() && residents.id(index) == id;
 }
 
 }  // namespace
@@ -68,13 +68,13 @@ void GatePlan::drop_hidden(const ResidentSet& residents) {
   const std::uint32_t visible = residents.visible();
   if (residents.size() - visible <= kSpareHidden + 4 * visible) return;
   drops_.resize(residents.size());
-  for (std::uint32_t i = 0; i < residents.size(); ++i) drops_[i] = !residents.presence(i).visible;
+  for (std::uint32_t i = 0; i < residents.size(); ++i) drops_[i] = !residents.visible(i);
 }
 
 std::span<const Block* const> GatePlan::targets(const ResidentSet& left) {
   targets_.resize(left.size());
   for (std::uint32_t i = 0; i < left.size(); ++i) {
-    targets_[i] = left.presence(i).visible ? &left.block(i) : nullptr;
+    targets_[i] = left.visible(i) ? &left.block(i) : nullptr;
   }
   for (const PatchId id : update_->removed) {
     const std::uint32_t at = left.lower_bound(id);

@@ -126,8 +126,8 @@ void GateScript<Coder>::drop() {
   ResidentSet& residents = state_->residents;
   for (std::uint32_t i = 0; i < residents.size(); ++i) {
     if (!drops_[i]) continue;
-    state_->mix(value(residents.presence(i).id));
-    if (residents.presence(i).visible) removed_.push_back(residents.presence(i).id);
+    state_->mix(value(residents.id(i)));
+    if (residents.visible(i)) removed_.push_back(residents.id(i));
   }
   residents.drop(drops_);
   state_->gates.clear();
@@ -199,7 +199,7 @@ void GateScript<Coder>::report(MetaUpdate& effect, std::uint32_t first_vertex) {
   const ResidentSet& residents = state_->residents;
   effect.frame = state_->frame;
   effect.removed = removed_;
-  for (const std::uint32_t i : hidden_) effect.removed.push_back(residents.presence(i).id);
+  for (const std::uint32_t i : hidden_) effect.removed.push_back(residents.id(i));
   if (!removed_.empty()) std::ranges::sort(effect.removed);
   effect.vertices.reserve(state_->vertices.size() - first_vertex);
   for (std::uint32_t v = first_vertex; v < state_->vertices.size(); ++v) {
@@ -212,7 +212,7 @@ void GateScript<Coder>::report(MetaUpdate& effect, std::uint32_t first_vertex) {
     effect.added.push_back(added);
   };
   for (const Placement& p : placements_) {
-    const PatchId id = residents.presence(p.resident).id;
+    const PatchId id = residents.id(p.resident);
     if (p.why == Placement::Why::kChanged) {
       effect.moved.push_back({id, p.block});
     } else {

@@ -4,7 +4,7 @@
 #include "codec/level_script.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,19 +37,38 @@ class PresenceScript {
   static constexpr std::uint32_t kGroup = 8;
   static constexpr std::uint8_t kCalm = 32;
 
-  void code_flips(std::uint32_t first, std::uint32_t end);
-  bool code_changes(std::uint32_t first, std::uint32_t end);
+  /// Of one group, a bit each: visible before, and coming or going now.
+  struct Flips {
+    std::uint32_t was_visible = 0;
+    std::uint32_t flip = 0;
+    [[nodiscard]] std::uint32_t stay() const { return was_visible & ~flip; }
+  };
+
+  Flips code_flips(std::uint32_t first, std::uint32_t count);
+  bool code_changes(std::uint32_t first, const Flips& flips);
   bool place(std::uint32_t resident, Placement::Why why);
   [[nodiscard]] const Block* target(std::uint32_t resident) const {
     return targets_.empty() ? nullptr : targets_[resident];
   }
   [[nodiscard]] bool wants_flip(std::uint32_t resident) const {
-    return !targets_.empty() &&
-           (targets_[resident] != nullptr) != state_->residents.presence(resident).visible;
+    return !targets_.empty() && (targets_[resident] != nullptr) != state_->residents.visible(resident);
   }
   [[nodiscard]] bool wants_change(std::uint32_t resident) const {
     return target(resident) != nullptr && *target(resident) != state_->residents.block(resident);
   }
+  /// Whether an encoder wants `what` of any resident whose bit is set.
+  template <class Want>
+  [[nodiscard]] bool wants_any(std::uint32_t bits, Want what) const {
+    if (targets_.empty()) return false;
+    for (; bits != 0; bits &= bits - 1) {
+      if (what(static_cast<std::uint32_t>(std::countr_zero(bits)))) return true;
+    }
+    return false;
+  }
+  static std::uint32_t age_of(std::uint8_t calm) {
+    return static_cast<std::uint32_t>(calm >= kCalm / 2) + static_cast<std::uint32_t>(calm >= kCalm);
+  }
+  static std::uint32_t next_flow(std::uint32_t flow, bool yes) { return yes ? 2 : flow == 2 ? 1 : 0; }
 
   Coder* coder_;
   GateState* state_;
@@ -57,8 +76,6 @@ class PresenceScript {
   std::span<const Block* const> targets_;
   std::vector<std::uint32_t>* hidden_ = nullptr;
   std::vector<Placement>* placements_ = nullptr;
-  std::array<bool, kGroup> was_visible_{};
-  std::array<bool, kGroup> flips_{};
   std::uint32_t before_ = 0;  ///< the patch before: visible, and twice whether it came or went
   std::uint32_t calm_flow_ = 0;
   std::uint32_t change_flow_ = 0;
@@ -70,73 +87,70 @@ bool PresenceScript<Coder>::code(std::vector<std::uint32_t>& hidden, std::vector
   placements_ = &placements;
   const std::uint32_t size = state_->residents.size();
   for (std::uint32_t first = 0; first < size; first += kGroup) {
-    const std::uint32_t end = std::min(size, first + kGroup);
-    code_flips(first, end);
-    if (!code_changes(first, end)) return false;
+    const std::uint32_t count = std::min(size - first, kGroup);
+    const Flips flips = code_flips(first, count);
+    state_->residents.note(first, count, flips.flip);
+    if (!code_changes(first, flips)) return false;
   }
   return true;
 }
 
 template <class Coder>
-void PresenceScript<Coder>::code_flips(std::uint32_t first, std::uint32_t end) {
-  ResidentSet& residents = state_->residents;
-  bool is_calm = true;
-  bool wanted = false;
-  for (std::uint32_t i = first; i < end; ++i) {
-    is_calm = is_calm && residents.presence(i).calm >= kCalm;
-    wanted = wanted || wants_flip(i);
-    was_visible_[i - first] = residents.presence(i).visible;
-    flips_[i - first] = false;
+typename PresenceScript<Coder>::Flips PresenceScript<Coder>::code_flips(std::uint32_t first,
+                                                                        std::uint32_t count) {
+  const ResidentSet& residents = state_->residents;
+  Flips flips;
+  std::uint8_t least_calm = 255;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    least_calm = std::min(least_calm, residents.calm(first + i));
+    flips.was_visible |= static_cast<std::uint32_t>(residents.visible(first + i)) << i;
   }
-  bool any = true;
-  if (is_calm) {
-    any = coder_->code(models_->calm_group[calm_flow_], wanted);
-    calm_flow_ = any ? 2 : calm_flow_ == 2 ? 1 : 0;
-  }
-  for (std::uint32_t i = first; i < end; ++i) {
-    const Presence& p = residents.presence(i);
-    bool flip = false;
-    if (any) {
-      const std::uint32_t calm = p.calm < 16 ? 0 : p.calm < kCalm ? 1 : 2;
-      flip = coder_->code(models_->flip[(std::uint32_t{p.history} * 4 + before_) * 3 + calm], wants_flip(i));
+  if (least_calm >= kCalm) {
+    const bool any =
+        coder_->code(models_->calm_group[calm_flow_],
+                     wants_any((1U << count) - 1, [&](auto i) { return wants_flip(first + i); }));
+    calm_flow_ = next_flow(calm_flow_, any);
+    if (!any) {
+      before_ = flips.was_visible >> (count - 1);
+      return flips;
     }
-    const bool visible = p.visible != flip;
-    before_ = 2 * static_cast<std::uint32_t>(flip) + static_cast<std::uint32_t>(visible);
-    flips_[i - first] = flip;
-    residents.note(i, visible);
   }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t context =
+        (std::uint32_t{residents.history(first + i)} * 4 + before_) * 3 + age_of(residents.calm(first + i));
+    before_ = flips.was_visible >> i & 1U;
+    // A branch, so that processors guess it and go on with the next context.
+    if (coder_->code(models_->flip[context], wants_flip(first + i))) [[unlikely]] {
+      before_ = 3 - before_;
+      flips.flip |= 1U << i;
+    }
+  }
+  return flips;
 }
 
 template <class Coder>
-bool PresenceScript<Coder>::code_changes(std::uint32_t first, std::uint32_t end) {
-  bool stays = false;
-  bool wanted = false;
-  for (std::uint32_t i = first; i < end; ++i) {
-    if (!was_visible_[i - first] || flips_[i - first]) continue;
-    stays = true;
-    wanted = wanted || wants_change(i);
-  }
-  bool any = false;
-  if (stays) {
-    any = coder_->code(models_->change_group[change_flow_], wanted);
-    change_flow_ = any ? 2 : change_flow_ == 2 ? 1 : 0;
+bool PresenceScript<Coder>::code_changes(std::uint32_t first, const Flips& flips) {
+  std::uint32_t asked = flips.stay();
+  if (asked != 0) {
+    const bool any = coder_->code(models_->change_group[change_flow_],
+                                  wants_any(asked, [&](auto i) { return wants_change(first + i); }));
+    change_flow_ = next_flow(change_flow_, any);
+    if (!any) asked = 0;
   }
   std::uint32_t flow = 0;
-  for (std::uint32_t i = first; i < end; ++i) {
-    if (flips_[i - first]) {
-      if (was_visible_[i - first]) {
-        hidden_->push_back(i);
-      } else if (!place(i, Placement::Why::kShown)) {
-        return false;
-      }
-      continue;
+  for (std::uint32_t left = flips.flip | asked; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    const std::uint32_t resident = first + i;
+    if ((asked >> i & 1U) != 0) {
+      const std::uint32_t age = age_of(state_->residents.calm(resident));
+      const bool changes = coder_->code(models_->change[age * 3 + flow], wants_change(resident));
+      flow = next_flow(flow, changes);
+      if (changes && !place(resident, Placement::Why::kChanged)) return false;
+    } else if ((flips.was_visible >> i & 1U) != 0) {
+      hidden_->push_back(resident);
+    } else if (!place(resident, Placement::Why::kShown)) {
+      return false;
     }
-    if (!any || !was_visible_[i - first]) continue;
-    const std::uint8_t calm = state_->residents.presence(i).calm;
-    const std::uint32_t age = calm < 16 ? 0 : calm < kCalm ? 1 : 2;
-    const bool changes = coder_->code(models_->change[age * 3 + flow], wants_change(i));
-    flow = changes ? 2 : flow == 2 ? 1 : 0;
-    if (changes && !place(i, Placement::Why::kChanged)) return false;
   }
   return true;
 }

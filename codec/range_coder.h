@@ -20,7 +20,7 @@ class AdaptiveBit {
   }
   void update(bool bit) {
     const std::int32_t target = bit ? 0 : 65535;
-    const std::uint8_t fast_step = seen_ < kFastLimit ? seen_ : kFastLimit;
+    const std::uint32_t fast_step = seen_ < kFastLimit ? seen_ : kFastLimit;
     fast_ = toward(fast_, target, kRates[fast_step]);
     slow_ = toward(slow_, target, kRates[seen_]);
     if (seen_ < kSlowLimit) ++seen_;
@@ -30,8 +30,8 @@ class AdaptiveBit {
 
  private:
   static constexpr std::uint32_t kLeast = 16;
-  static constexpr std::uint8_t kFastLimit = 18;
-  static constexpr std::uint8_t kSlowLimit = 127;
+  static constexpr std::uint16_t kFastLimit = 18;
+  static constexpr std::uint16_t kSlowLimit = 127;
   /// 1 / (n + 2) in 32768ths.
   static constexpr std::array<std::int32_t, kSlowLimit + 1> kRates = [] {
     std::array<std::int32_t, kSlowLimit + 1> rates{};
@@ -44,8 +44,8 @@ class AdaptiveBit {
   }
 
   std::uint16_t fast_ = 32768;
+  std::uint16_t seen_ = 0;
   std::uint16_t slow_ = 32768;
-  std::uint8_t seen_ = 0;
 };
 
 /// Turns decisions into bytes: an adaptive binary range coder with carry (Martin 1979, as in LZMA), 32 bits

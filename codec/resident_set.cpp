@@ -5,34 +5,37 @@
 namespace atlaswire::codec {
 
 std::uint32_t ResidentSet::lower_bound(PatchId id) const {
-  const auto at = std::ranges::lower_bound(presences_, id, {}, &Presence::id);
-  return static_cast<std::uint32_t>(at - presences_.begin());
+  return static_cast<std::uint32_t>(std::ranges::lower_bound(ids_, id) - ids_.begin());
+}
+
+template <class Do>
+void ResidentSet::for_each_list(Do action) {
+  action(ids_);
+  action(histories_);
+  action(calms_);
+  action(shapes_);
+  action(blocks_);
 }
 
 void ResidentSet::merge(std::span<const NewResident> arrivals) {
-  std::size_t old = presences_.size();
+  std::size_t old = ids_.size();
   std::size_t at = old + arrivals.size();
-  presences_.resize(at);
-  shapes_.resize(at);
-  blocks_.resize(at);
+  for_each_list([&](auto& list) { list.resize(at); });
   visible_ += static_cast<std::uint32_t>(arrivals.size());
   // From the back, so that each entry moves once, and in runs between arrivals.
   for (std::size_t left = arrivals.size(); left > 0;) {
     const NewResident& arrival = arrivals[--left];
-    const auto begin = presences_.begin();
-    const auto first = std::lower_bound(begin, begin + static_cast<std::ptrdiff_t>(old), arrival.id,
-                                        [](const Presence& p, PatchId id) { return p.id < id; }) -
-                       begin;
-    const auto move_run = [&](auto& list) {
+    const auto begin = ids_.begin();
+    const auto first = std::lower_bound(begin, begin + static_cast<std::ptrdiff_t>(old), arrival.id) - begin;
+    for_each_list([&](auto& list) {
       std::move_backward(list.begin() + first, list.begin() + static_cast<std::ptrdiff_t>(old),
                          list.begin() + static_cast<std::ptrdiff_t>(at));
-    };
-    move_run(presences_);
-    move_run(shapes_);
-    move_run(blocks_);
+    });
     at -= old - static_cast<std::size_t>(first) + 1;
     old = static_cast<std::size_t>(first);
-    presences_[at] = {.id = arrival.id, .visible = true, .history = 1};
+    ids_[at] = arrival.id;
+    histories_[at] = 1;
+    calms_[at] = 0;
     shapes_[at] = arrival.shape;
     blocks_[at] = arrival.block;
   }
@@ -40,25 +43,19 @@ void ResidentSet::merge(std::span<const NewResident> arrivals) {
 
 void ResidentSet::drop(const std::vector<bool>& marks) {
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < presences_.size(); ++i) {
+  for (std::uint32_t i = 0; i < size(); ++i) {
     if (marks[i]) {
-      if (presences_[i].visible) --visible_;
+      if (visible(i)) --visible_;
       continue;
     }
-    presences_[kept] = presences_[i];
-    shapes_[kept] = shapes_[i];
-    blocks_[kept] = blocks_[i];
+    for_each_list([&](auto& list) { list[kept] = list[i]; });
     ++kept;
   }
-  presences_.resize(kept);
-  shapes_.resize(kept);
-  blocks_.resize(kept);
+  for_each_list([&](auto& list) { list.resize(kept); });
 }
 
 void ResidentSet::clear() {
-  presences_.clear();
-  shapes_.clear();
-  blocks_.clear();
+  for_each_list([](auto& list) { list.clear(); });
   visible_ = 0;
 }
 

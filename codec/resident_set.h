@@ -5,19 +5,12 @@
 #include "base/patch_layout.h"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace atlaswire::codec {
-
-/// How a patch has come and gone: what foretells whether it comes or goes now.
-struct Presence {
-  PatchId id{};
-  bool visible = false;
-  std::uint8_t history = 0;  ///< visible in each of the last 8 updates, the newest in bit 0
-  std::uint8_t calm = 0;     ///< updates since it last came or went; stays at 255
-};
 
 /// What never changes of a patch.
 struct PatchShape {
@@ -39,17 +32,22 @@ struct NewResident {
 /// The patches that both ends know, visible or not, ascending by id. A hidden one keeps its last block.
 class ResidentSet {
  public:
-  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(presences_.size()); }
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(ids_.size()); }
   [[nodiscard]] std::uint32_t visible() const { return visible_; }
-  [[nodiscard]] const Presence& presence(std::uint32_t index) const { return presences_[index]; }
+  [[nodiscard]] PatchId id(std::uint32_t index) const { return ids_[index]; }
+  /// Visible in each of the last 8 updates, the newest in bit 0.
+  [[nodiscard]] std::uint8_t history(std::uint32_t index) const { return histories_[index]; }
+  [[nodiscard]] bool visible(std::uint32_t index) const { return (histories_[index] & 1U) != 0; }
+  /// Updates since it last came or went; stays at 255.
+  [[nodiscard]] std::uint8_t calm(std::uint32_t index) const { return calms_[index]; }
   [[nodiscard]] const PatchShape& shape(std::uint32_t index) const { return shapes_[index]; }
   [[nodiscard]] Block& block(std::uint32_t index) { return blocks_[index]; }
   [[nodiscard]] const Block& block(std::uint32_t index) const { return blocks_[index]; }
   /// Index of the first patch whose id is not below `id`.
   [[nodiscard]] std::uint32_t lower_bound(PatchId id) const;
 
-  /// Notes whether a patch is visible in this update.
-  void note(std::uint32_t index, bool visible);
+  /// Notes which of `count` patches from `first` on come or go in this update, a bit each; at most 32.
+  void note(std::uint32_t first, std::uint32_t count, std::uint32_t flips);
   /// Takes in patches, visible now; ascending, none known before.
   void merge(std::span<const NewResident> arrivals);
   /// Forgets the patches marked; one mark each.
@@ -57,22 +55,33 @@ class ResidentSet {
   void clear();
 
  private:
-  std::vector<Presence> presences_;
-  std::vector<PatchShape> shapes_;  ///< beside them
+  /// Does the same to each list.
+  template <class Do>
+  void for_each_list(Do action);
+
+  /// In all the same order.
+  std::vector<PatchId> ids_;
+  std::vector<std::uint8_t> histories_;
+  std::vector<std::uint8_t> calms_;
+  std::vector<PatchShape> shapes_;
   std::vector<Block> blocks_;
   std::uint32_t visible_ = 0;
 };
 
-inline void ResidentSet::note(std::uint32_t index, bool visible) {
-  Presence& p = presences_[index];
-  p.history = static_cast<std::uint8_t>(std::uint32_t{p.history} << 1U | static_cast<std::uint32_t>(visible));
-  if (p.visible == visible) {
-    if (p.calm != 255) ++p.calm;
-    return;
+inline void ResidentSet::note(std::uint32_t first, std::uint32_t count, std::uint32_t flips) {
+  std::uint8_t* const histories = histories_.data() + first;
+  std::uint8_t* const calms = calms_.data() + first;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t history = histories[i];
+    histories[i] = static_cast<std::uint8_t>(history << 1U | (history & 1U));
+    calms[i] = static_cast<std::uint8_t>(calms[i] + static_cast<std::uint8_t>(calms[i] != 255));
   }
-  p.calm = 0;
-  p.visible = visible;
-  visible ? ++visible_ : --visible_;
+  for (; flips != 0; flips &= flips - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(flips));
+    histories[i] ^= 1U;
+    calms[i] = 0;
+    (histories[i] & 1U) != 0 ? ++visible_ : --visible_;
+  }
 }
 
 }  // namespace atlaswire::codec

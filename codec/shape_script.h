@@ -123,7 +123,7 @@ bool ShapeScript<Coder>::code_id(const WantedPatch* wanted, NewResident& patch) 
   gap_class_ = gap == 0 ? 0 : gap < 16 ? 1 : 2;
   if (gap >= limits_->max_patches) return fail(MetaError::kIdOutOfRange);
   std::uint64_t id = std::uint64_t{next_id_} + gap;
-  for (; next_resident_ < residents.size() && value(residents.presence(next_resident_).id) <= id;
+  for (; next_resident_ < residents.size() && value(residents.id(next_resident_)) <= id;
        ++next_resident_) {
     ++id;
   }
@@ -150,7 +150,7 @@ void ShapeScript<Coder>::look_around(std::span<const NewResident> before) {
     }
     const bool resident = below > 0;
     const bool fresh = left > 0;
-    if (fresh && (!resident || before[left - 1].id > residents.presence(below - 1).id)) {
+    if (fresh && (!resident || before[left - 1].id > residents.id(below - 1))) {
       --left;
       near_[i] = {before[left].shape, before[left].block, true};
     } else if (resident) {
