@@ -1,18 +1,26 @@
 #pragma once
 
 #include "codec/adaptive_models.h"
+#include "codec/resident_outlook.h"
 
 #include <array>
 #include <cstdint>
 
 namespace atlaswire::codec {
 
+/// Contexts of a whole number that is about 0: whether it is, which side it lies on, and how far.
+struct OffsetModels {
+  AdaptiveBit off;
+  AdaptiveBit below;
+  AdaptiveBit far;
+  AdaptiveTree<5> further;  ///< distance - 2
+};
+
 /// Contexts of a block's size, apart for blocks that change, come back and are new.
 struct LevelModels {
-  AdaptiveBit same;                            ///< size and mirroring as at the reference
-  std::array<AdaptiveTree<4>, 16> width;       ///< by the reference's width
-  std::array<AdaptiveTree<4>, 3 * 16> height;  ///< by how the width went, and the reference's height
-  std::array<AdaptiveBit, 2 * 2> transposed;   ///< by the reference's, and whether the size is as there
+  std::array<OffsetModels, 16> area;            ///< by the reference's
+  std::array<OffsetModels, 3 * 7 * 4> stretch;  ///< by how the area went, the reference's stretch and area
+  std::array<AdaptiveBit, 2> mirrored_square;   ///< by whether the reference is mirrored
 };
 
 /// Contexts of where a vertex is, relative to where it was expected.
@@ -39,10 +47,12 @@ struct GateModels {
   AdaptiveBit memory_reset;  ///< only where positions are derived
 
   // Who comes and goes.
-  std::array<AdaptiveBit, 3> calm_group;      ///< by whether the calm groups before stayed calm
-  std::array<AdaptiveBit, 256 * 4 * 3> flip;  ///< by history, the patch before, and how long calm
+  std::array<AdaptiveBit, 3> calm_group;  ///< by whether the calm groups before stayed calm
+  /// By outlook, and the patch before: visible, and twice whether it came or went.
+  std::array<AdaptiveBit, ResidentOutlook::kCount * 4> flip;
   std::array<AdaptiveBit, 3> change_group;
-  std::array<AdaptiveBit, 3 * 3> change;  ///< by how long calm, and the patches before
+  /// By calm, the patches before in the group, whether any of those changes, and how many are left.
+  std::array<AdaptiveBit, 3 * 3 * 2 * 8> change;
   LevelModels changed_level;
   LevelModels shown_level;
   LevelModels new_level;

@@ -2,6 +2,7 @@
 
 #include "codec/gate_state.h"
 #include "codec/level_script.h"
+#include "codec/resident_outlook.h"
 
 #include <algorithm>
 #include <bit>
@@ -116,8 +117,7 @@ typename PresenceScript<Coder>::Flips PresenceScript<Coder>::code_flips(std::uin
     }
   }
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t context =
-        (std::uint32_t{residents.history(first + i)} * 4 + before_) * 3 + age_of(residents.calm(first + i));
+    const std::uint32_t context = ResidentOutlook::of(residents, first + i) * 4 + before_;
     before_ = flips.was_visible >> i & 1U;
     // A branch, so that processors guess it and go on with the next context.
     if (coder_->code(models_->flip[context], wants_flip(first + i))) [[unlikely]] {
@@ -138,12 +138,20 @@ bool PresenceScript<Coder>::code_changes(std::uint32_t first, const Flips& flips
     if (!any) asked = 0;
   }
   std::uint32_t flow = 0;
+  bool found = false;
   for (std::uint32_t left = flips.flip | asked; left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
     const std::uint32_t resident = first + i;
     if ((asked >> i & 1U) != 0) {
-      const std::uint32_t age = age_of(state_->residents.calm(resident));
-      const bool changes = coder_->code(models_->change[age * 3 + flow], wants_change(resident));
+      const auto behind = static_cast<std::uint32_t>(std::popcount(asked >> i)) - 1;
+      const std::uint32_t context =
+          ((age_of(state_->residents.calm(resident)) * 3 + flow) * 2 + static_cast<std::uint32_t>(found)) *
+              8 +
+          behind;
+      // Of those that are asked one changes, if only the last.
+      const bool changes =
+          (behind == 0 && !found) || coder_->code(models_->change[context], wants_change(resident));
+      found = found || changes;
       flow = next_flow(flow, changes);
       if (changes && !place(resident, Placement::Why::kChanged)) return false;
     } else if ((flips.was_visible >> i & 1U) != 0) {

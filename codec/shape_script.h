@@ -123,8 +123,7 @@ bool ShapeScript<Coder>::code_id(const WantedPatch* wanted, NewResident& patch) 
   gap_class_ = gap == 0 ? 0 : gap < 16 ? 1 : 2;
   if (gap >= limits_->max_patches) return fail(MetaError::kIdOutOfRange);
   std::uint64_t id = std::uint64_t{next_id_} + gap;
-  for (; next_resident_ < residents.size() && value(residents.id(next_resident_)) <= id;
-       ++next_resident_) {
+  for (; next_resident_ < residents.size() && value(residents.id(next_resident_)) <= id; ++next_resident_) {
     ++id;
   }
   if (id >= limits_->max_patches) return fail(MetaError::kIdOutOfRange);

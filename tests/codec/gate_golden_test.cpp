@@ -82,9 +82,9 @@ TEST(GateMetaGolden, BytesStayAsTheyAre) {
     encoder.encode(update, out);
     return hex(out);
   };
-  EXPECT_EQ(bytes_of(first_update()), "A300000007082BBCC8358DD548D4AE59C6A70584A814A423327EB750920C");
-  EXPECT_EQ(bytes_of(second_update()), "A2AAC6DA45E72074A65E2E2D");
-  EXPECT_EQ(bytes_of(third_update()), "A2E1FEE21F24DD5248F226AF0417B377");
+  EXPECT_EQ(bytes_of(first_update()), "A300000007082BBCC8358DD548D4AE59FF75E509502948FD048EECBBA8");
+  EXPECT_EQ(bytes_of(second_update()), "A2AB4F5A45E71D7B3EDC1847");
+  EXPECT_EQ(bytes_of(third_update()), "A2E1FEE21F24DD5248F226AF0337E06F");
 }
 
 TEST(GateMetaGolden, UpdatesComeThrough) {
