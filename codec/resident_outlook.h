@@ -36,7 +36,8 @@ class ResidentOutlook {
     std::array<std::uint8_t, 256> classes{};
     for (std::uint32_t history = 0; history < 256; ++history) {
       const int turns = std::popcount((history ^ history >> 1U) & 0x7FU);
-      classes[history] = static_cast<std::uint8_t>((history & 1U) * 3 + (turns < 2 ? turns : 2));
+      classes[history] =
+          static_cast<std::uint8_t>((history & 1U) * 3 + static_cast<std::uint32_t>(turns < 2 ? turns : 2));
     }
     return classes;
   }();
