@@ -20,6 +20,12 @@ struct BlockRequest {
   bool transposed = false;
 };
 
+/// What changes from one frame's requests to the next's. Both ascend by patch; no patch is in both.
+struct RequestChange {
+  std::span<const PatchId> gone;        ///< asked in the frame before, and no longer
+  std::span<const BlockRequest> asked;  ///< new, or of another size; a request that stands may be repeated
+};
+
 /// A patch and its block.
 struct PlacedPatch {
   PatchId patch{};
@@ -94,12 +100,20 @@ class AtlasAllocator {
   [[nodiscard]] virtual bool wants_reset() const = 0;
 };
 
+/// An allocator that can be told a frame by what changes, and whose work then follows from that: for a
+/// receiver, who hears nothing else.
+class IncrementalAllocator : public AtlasAllocator {
+ public:
+  /// As `update` with the requests that come about; frames may come in either way.
+  virtual const LayoutChange& update_by(const RequestChange& change, bool may_reset) = 0;
+};
+
 /// A reset would help and should not wait for the next I-frame by rule, because next to no superblock is
 /// free: an early I-frame is worth its bytes.
 bool reset_is_urgent(const AtlasAllocator& allocator, Extent2D atlas);
 
 /// The sequential model of [SAS] 4.2: request, provisioning and assignment phases, in patch order.
-std::unique_ptr<AtlasAllocator> make_sequential_allocator(const AllocatorSettings& settings,
-                                                          std::uint32_t patch_count);
+std::unique_ptr<IncrementalAllocator> make_sequential_allocator(const AllocatorSettings& settings,
+                                                                std::uint32_t patch_count);
 
 }  // namespace atlaswire::render

@@ -19,7 +19,7 @@ namespace {
 ///   until it fits. So a patch is refused only if the free texels cannot give every newcomer a smallest
 ///   block. A shrunken block is replaced, in later frames, once memory below the high-water mark allows.
 /// - A reset happens only if it would help (AtlasDemand).
-class SequentialAllocator final : public AtlasAllocator {
+class SequentialAllocator final : public IncrementalAllocator {
  public:
   SequentialAllocator(const AllocatorSettings& settings, std::uint32_t patch_count)
       : ledger_(settings, patch_count),
@@ -27,13 +27,26 @@ class SequentialAllocator final : public AtlasAllocator {
         demand_(settings),
         regrow_limit_(high_water_texels(settings)) {}
 
-  const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) override;
+  const LayoutChange& update(std::span<const BlockRequest> visible, bool may_reset) override {
+    begin(may_reset);
+    ledger_.advance(visible, change_.reset);
+    return finish();
+  }
+  const LayoutChange& update_by(const RequestChange& change, bool may_reset) override {
+    begin(may_reset);
+    ledger_.advance(change, change_.reset);
+    return finish();
+  }
   void restart() override { restarts_ = true; }
   [[nodiscard]] std::vector<PlacedPatch> blocks() const override { return ledger_.blocks(); }
   [[nodiscard]] AtlasUsage usage() const override { return store_.usage(); }
   [[nodiscard]] bool wants_reset() const override { return wants_reset_; }
 
  private:
+  void begin(bool may_reset) {
+    change_.reset = std::exchange(restarts_, false) || (may_reset && wants_reset_);
+  }
+  const LayoutChange& finish();
   void provision();
   void limit_regrowing();
   void assign();
@@ -52,9 +65,8 @@ class SequentialAllocator final : public AtlasAllocator {
   bool restarts_ = false;
 };
 
-const LayoutChange& SequentialAllocator::update(std::span<const BlockRequest> visible, bool may_reset) {
-  change_.reset = std::exchange(restarts_, false) || (may_reset && wants_reset_);
-  ledger_.advance(visible, change_.reset);
+/// All that follows once the ledger knows the frame's requests.
+const LayoutChange& SequentialAllocator::finish() {
   if (change_.reset) {
     store_.clear();
   } else {
@@ -81,8 +93,8 @@ void SequentialAllocator::provision() {
 /// Lets as many shrunken patches grow as stay below the high-water mark, the largest first.
 void SequentialAllocator::limit_regrowing() {
   regrowing_.fill(0);
-  for (const std::uint32_t i : ledger_.shrunken()) {
-    ++regrowing_[store_.numbers().number(ledger_.entry(i).want)];
+  for (const PatchId patch : ledger_.shrunken()) {
+    ++regrowing_[store_.numbers().number(ledger_.entry(patch).want)];
   }
   std::uint64_t room = regrow_limit_ - std::min(regrow_limit_, store_.allocated());
   for (std::uint32_t i = store_.numbers().count(); i-- > 0;) {
@@ -94,10 +106,10 @@ void SequentialAllocator::limit_regrowing() {
 
 void SequentialAllocator::assign() {
   PerLevel slot{};
-  for (const std::uint32_t i : ledger_.pending()) {
-    const Level want = ledger_.entry(i).want;
+  for (const PatchId patch : ledger_.pending()) {
+    const Level want = ledger_.entry(patch).want;
     const auto placed = store_.place(provision_, want, slot[store_.numbers().number(want)]++);
-    if (placed) ledger_.place(i, *placed);
+    if (placed) ledger_.place(patch, *placed);
   }
 }
 
@@ -112,22 +124,22 @@ void SequentialAllocator::regrow() {
   }
   outgrown_.resize(grown);
   PerLevel slot{};
-  for (const std::uint32_t i : ledger_.shrunken()) {
-    const PatchLedger::Entry& entry = ledger_.entry(i);
+  for (const PatchId patch : ledger_.shrunken()) {
+    const PatchLedger::Entry& entry = ledger_.entry(patch);
     const std::uint32_t number = store_.numbers().number(entry.want);
     const std::uint32_t my_slot = slot[number]++;
     const auto placed = store_.place(regrow_, entry.want, my_slot);
     if (!placed) continue;
     outgrown_[first[number] + my_slot] = entry.block;
-    ledger_.place(i, *placed);
+    ledger_.place(patch, *placed);
   }
   for (const Block& block : outgrown_) store_.defer(block);
 }
 
 }  // namespace
 
-std::unique_ptr<AtlasAllocator> make_sequential_allocator(const AllocatorSettings& settings,
-                                                          std::uint32_t patch_count) {
+std::unique_ptr<IncrementalAllocator> make_sequential_allocator(const AllocatorSettings& settings,
+                                                                std::uint32_t patch_count) {
   check_allocator_settings(settings);
   return std::make_unique<SequentialAllocator>(settings, patch_count);
 }

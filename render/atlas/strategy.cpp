@@ -42,7 +42,7 @@ class DirectAllocator final : public AtlasAllocator {
   AtlasDemand demand_;
   std::unique_ptr<BlockMemory> memory_;
   Resets resets_;
-  std::vector<std::uint32_t> order_;
+  std::vector<PatchId> order_;
   LayoutChange change_;
   bool wants_reset_ = false;
   bool restarts_ = false;
@@ -73,12 +73,12 @@ void DirectAllocator::place_pending() {
     count += ledger_.requested()[i];
   }
   order_.resize(count);
-  for (const std::uint32_t i : ledger_.pending()) {
-    order_[cursor[numbers.number(ledger_.entry(i).want)]++] = i;
+  for (const PatchId patch : ledger_.pending()) {
+    order_[cursor[numbers.number(ledger_.entry(patch).want)]++] = patch;
   }
-  for (const std::uint32_t i : order_) {
-    const Level want = ledger_.entry(i).want;
-    if (const auto at = memory_->take(want)) ledger_.place(i, {want, *at});
+  for (const PatchId patch : order_) {
+    const Level want = ledger_.entry(patch).want;
+    if (const auto at = memory_->take(want)) ledger_.place(patch, {want, *at});
   }
 }
 

@@ -1,4 +1,5 @@
 #include "base/program.h"
+#include "render/atlas/layout_hash.h"
 #include "tests/render/atlas/layout_checker.h"
 
 #include <gtest/gtest.h>
@@ -68,6 +69,23 @@ TEST(SequentialAllocator, IsDeterministic) {
     ASSERT_TRUE(std::ranges::equal(
         left, right, [](const auto& l, const auto& r) { return l.patch == r.patch && l.block == r.block; }));
   }
+}
+
+TEST(SequentialAllocator, LaysOutAsReceiversDo) {
+  // Layouts are part of the protocol: another order of slots would part both ends.
+  const auto layouts = [](const AllocatorSettings& settings, std::uint32_t patches) {
+    const auto allocator = make_sequential_allocator(settings, patches);
+    DriftingScene scene(29, patches, settings);
+    LayoutHash hash;
+    for (int frame = 0; frame < 400; ++frame) {
+      const double visible = frame / 40 % 2 == 0 ? 0.6 : 0.3;
+      hash.follow(allocator->update(scene.step(frame == 0 ? 1.0 : 0.03, visible, 4), frame % 7 == 0));
+    }
+    return hash.hash().value();
+  };
+  EXPECT_EQ(layouts(small_atlas(), 600), 0xBAC605E8U);
+  EXPECT_EQ(layouts(small_atlas(128), 300), 0xD71468E7U);       // shrinks and grows blocks
+  EXPECT_EQ(layouts(small_atlas(64, 4, 3), 300), 0x3BC8C4D9U);  // refuses
 }
 
 TEST(SequentialAllocator, GivesEveryPatchItsSizeWhereMemorySuffices) {
