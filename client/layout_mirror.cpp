@@ -4,35 +4,53 @@
 #include "client/replica.h"
 
 #include <algorithm>
-#include <utility>
+#include <functional>
 
 namespace atlaswire::client {
+namespace {
+
+/// Decoders give ascending lists, but need not.
+template <class List, class Key>
+void sort_by(List& list, Key key) {
+  if (!std::ranges::is_sorted(list, {}, key)) std::ranges::sort(list, {}, key);
+}
+
+template <class List, class Key>
+bool has_twice(const List& list, Key key) {
+  return std::ranges::adjacent_find(list, {}, key) != list.end();
+}
+
+void sort_lists(codec::MetaUpdate& asked) {
+  sort_by(asked.removed, std::identity{});
+  sort_by(asked.added, &codec::AddedPatch::id);
+  sort_by(asked.moved, &codec::MovedPatch::id);
+}
+
+}  // namespace
 
 LayoutMirror::LayoutMirror(const proto::AtlasMemory& memory, const Extent2D& atlas, std::uint32_t max_patches,
                            bool believes_all)
-    : settings_{.atlas = atlas,
-                .superblock_log2 = memory.superblock_log2,
-                .min_block_log2 = memory.min_block_log2,
-                .high_water = memory.high_water},
-      max_patches_(max_patches),
-      believes_all_(believes_all) {}
+    : max_patches_(max_patches),
+      believes_all_(believes_all),
+      allocator_(render::make_sequential_allocator({.atlas = atlas,
+                                                    .superblock_log2 = memory.superblock_log2,
+                                                    .min_block_log2 = memory.min_block_log2,
+                                                    .high_water = memory.high_water},
+                                                   max_patches)) {}
 
 Result<codec::MetaUpdate> LayoutMirror::place(codec::MetaUpdate asked) {
   if (asked.reset) {
-    asked_.clear();
-    allocator_ = render::make_sequential_allocator(settings_, max_patches_);
+    forget_all();
     in_step_ = true;
   }
   if (!in_step_ || !asked.cue) return codec::MetaError::kOutOfStep;
   in_step_ = false;
-  if (Result<void> taken = take_in(asked); !taken) return taken.error();
-  requests_.clear();
-  for (const codec::AddedPatch& patch : asked_) {
-    requests_.push_back({patch.id, patch.block.width_log2, patch.block.height_log2, patch.block.transposed});
-  }
+  sort_lists(asked);
+  if (Result<void> fine = check(asked); !fine) return fine.error();
+  take_in(asked);
   const bool resets = asked.reset || asked.cue->reset;
   if (resets) allocator_->restart();
-  const render::LayoutChange& change = allocator_->update(requests_, false);
+  const render::LayoutChange& change = allocator_->update_by({asked.removed, requests_}, false);
   if (resets) {
     hash_.begin(allocator_->blocks());
   } else {
@@ -46,41 +64,43 @@ Result<codec::MetaUpdate> LayoutMirror::place(codec::MetaUpdate asked) {
   return asked;
 }
 
-/// The patches that ask from now on.
-Result<void> LayoutMirror::take_in(codec::MetaUpdate& asked) {
-  std::ranges::sort(asked.removed);
-  std::ranges::sort(asked.added, {}, &codec::AddedPatch::id);
-  std::ranges::sort(asked.moved, {}, &codec::MovedPatch::id);
+Result<void> LayoutMirror::check(const codec::MetaUpdate& asked) const {
   if (!asked.added.empty() && value(asked.added.back().id) >= max_patches_) {
     return ReplicaError::kPatchOutOfRange;
   }
-  next_.clear();
-  auto removed = asked.removed.begin();
-  auto moved = asked.moved.begin();
-  auto added = asked.added.begin();
-  const auto add_below = [&](auto is_below) {
-    for (; added != asked.added.end() && is_below(added->id); ++added) {
-      if (!next_.empty() && next_.back().id == added->id) return false;
-      next_.push_back(*added);
-    }
-    return true;
-  };
-  for (const codec::AddedPatch& known : asked_) {
-    if (!add_below([&](PatchId id) { return id < known.id; })) return ReplicaError::kPatchKnown;
-    if (removed != asked.removed.end() && *removed == known.id) {
-      ++removed;
-      // The memory would not notice that it is another patch now.
-      if (added != asked.added.end() && added->id == known.id) return ReplicaError::kPatchKnown;
-      continue;
-    }
-    next_.push_back(known);
-    if (moved != asked.moved.end() && moved->id == known.id) next_.back().block = (moved++)->block;
+  // Not even one that is removed here: the memory would not notice that it is another patch now.
+  const auto is_known = [&](const codec::AddedPatch& patch) { return asks(patch.id); };
+  if (std::ranges::any_of(asked.added, is_known) || has_twice(asked.added, &codec::AddedPatch::id)) {
+    return ReplicaError::kPatchKnown;
   }
-  if (!add_below([](PatchId) { return true; })) return ReplicaError::kPatchKnown;
-  // What no patch answered to names patches that do not ask.
-  if (removed != asked.removed.end() || moved != asked.moved.end()) return ReplicaError::kPatchUnknown;
-  std::swap(asked_, next_);
+  const auto is_unknown = [&](PatchId patch) { return !asks(patch); };
+  if (std::ranges::any_of(asked.removed, is_unknown) || has_twice(asked.removed, std::identity{})) {
+    return ReplicaError::kPatchUnknown;
+  }
+  if (has_twice(asked.moved, &codec::MovedPatch::id)) return ReplicaError::kPatchUnknown;
+  auto removed = asked.removed.begin();
+  for (const codec::MovedPatch& patch : asked.moved) {
+    while (removed != asked.removed.end() && *removed < patch.id) ++removed;
+    const bool goes = removed != asked.removed.end() && *removed == patch.id;
+    if (goes || !asks(patch.id)) return ReplicaError::kPatchUnknown;
+  }
   return {};
+}
+
+/// Who asks from now on, and what the memory must be told.
+void LayoutMirror::take_in(const codec::MetaUpdate& asked) {
+  requests_.clear();
+  const auto request = [&](PatchId patch, const Block& block) {
+    requests_.push_back({patch, block.width_log2, block.height_log2, block.transposed});
+  };
+  for (const PatchId patch : asked.removed) remove(patch);
+  auto moved = asked.moved.begin();
+  for (const codec::AddedPatch& patch : asked.added) {
+    for (; moved != asked.moved.end() && moved->id < patch.id; ++moved) request(moved->id, moved->block);
+    request(patch.id, patch.block);
+    add(patch);
+  }
+  for (; moved != asked.moved.end(); ++moved) request(moved->id, moved->block);
 }
 
 /// What became of the requests, in place of them.
@@ -90,14 +110,36 @@ void LayoutMirror::answer(const render::LayoutChange& change, codec::MetaUpdate&
   update.moved.clear();
   for (const render::PlacedPatch& placed : change.moved) update.moved.push_back({placed.patch, placed.block});
   update.added.clear();
-  auto at = asked_.begin();
   for (const render::PlacedPatch& placed : change.added) {
-    at = std::lower_bound(at, asked_.end(), placed.patch,
-                          [](const codec::AddedPatch& a, PatchId id) { return a.id < id; });
-    AW_ASSERT(at != asked_.end() && at->id == placed.patch);
-    update.added.push_back(*at);
+    AW_ASSERT(asks(placed.patch));
+    update.added.push_back(asking_[slot_[value(placed.patch)] - 1]);
     update.added.back().block = placed.block;
   }
+}
+
+bool LayoutMirror::asks(PatchId patch) const {
+  return value(patch) < slot_.size() && slot_[value(patch)] != 0;
+}
+
+void LayoutMirror::add(const codec::AddedPatch& patch) {
+  if (value(patch.id) >= slot_.size()) slot_.resize(value(patch.id) + 1);
+  asking_.push_back(patch);
+  slot_[value(patch.id)] = static_cast<std::uint32_t>(asking_.size());
+}
+
+void LayoutMirror::remove(PatchId patch) {
+  const std::uint32_t slot = slot_[value(patch)];
+  asking_[slot - 1] = asking_.back();
+  slot_[value(asking_.back().id)] = slot;
+  asking_.pop_back();
+  slot_[value(patch)] = 0;
+}
+
+/// The memory is emptied too, and restarted after: it then lays out as a new one would.
+void LayoutMirror::forget_all() {
+  for (const codec::AddedPatch& patch : asking_) slot_[value(patch.id)] = 0;
+  asking_.clear();
+  allocator_->update({}, false);
 }
 
 }  // namespace atlaswire::client

@@ -6,6 +6,7 @@
 #include "render/atlas/allocator.h"
 #include "render/atlas/layout_hash.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace atlaswire::client {
 
 /// Runs the server's atlas memory beside it ([SAS] 4.2, render::make_sequential_allocator), so that updates
 /// need not say where blocks lie: patches' requests go in, blocks come out, the same as the server's.
-/// docs/PROTOCOL.md, "Atlas memory". Safe on hostile updates: time and memory follow from patches told.
+/// docs/PROTOCOL.md, "Atlas memory". Work follows from what an update changes, but for resets. Safe on
+/// hostile updates: no allocation per patch; arrays grow to the largest id used.
 class LayoutMirror {
  public:
   /// `memory` and `atlas` as a StreamDescription that came through the wire's checks; ids below
@@ -29,17 +31,21 @@ class LayoutMirror {
   Result<codec::MetaUpdate> place(codec::MetaUpdate asked);
 
  private:
-  Result<void> take_in(codec::MetaUpdate& asked);
+  [[nodiscard]] Result<void> check(const codec::MetaUpdate& asked) const;
+  void take_in(const codec::MetaUpdate& asked);
   void answer(const render::LayoutChange& change, codec::MetaUpdate& update) const;
+  [[nodiscard]] bool asks(PatchId patch) const;
+  void add(const codec::AddedPatch& patch);
+  void remove(PatchId patch);
+  void forget_all();
 
-  render::AllocatorSettings settings_;
   std::uint32_t max_patches_;
   bool believes_all_;
-  std::unique_ptr<render::AtlasAllocator> allocator_;
+  std::unique_ptr<render::IncrementalAllocator> allocator_;
   render::LayoutHash hash_;
   bool in_step_ = false;
-  std::vector<codec::AddedPatch> asked_;  ///< ascending; the block is what the patch asks for
-  std::vector<codec::AddedPatch> next_;
+  std::vector<codec::AddedPatch> asking_;  ///< packed; their blocks mean nothing
+  std::vector<std::uint32_t> slot_;        ///< by PatchId: index into asking_ + 1; 0: does not ask
   std::vector<render::BlockRequest> requests_;
 };
 

@@ -122,6 +122,52 @@ TEST_F(LayoutMirrorTest, RefusesContradictions) {
   EXPECT_EQ(refusal([](auto& u) { u.added[1].id = PatchId{600}; }), ReplicaError::kPatchOutOfRange);
 }
 
+TEST(LayoutMirror, RefusesWhatDoesNotFitWhoAskedBefore) {
+  const auto refusal = [](const std::function<void(codec::MetaUpdate&)>& spoil) {
+    LayoutMirror mirror({5, 1, 0.95}, {128, 128}, 600, true);
+    codec::MetaUpdate update;
+    update.reset = true;
+    update.cue.emplace();
+    update.added = {{.id = PatchId{4}}, {.id = PatchId{7}}, {.id = PatchId{90}}};
+    EXPECT_TRUE(mirror.place(update));
+    codec::MetaUpdate second;
+    second.cue.emplace();
+    spoil(second);
+    const auto placed = mirror.place(second);
+    // What was refused leaves nothing behind.
+    const auto again = mirror.place(update);
+    EXPECT_TRUE(again && again->added.size() == 3 && again->removed.empty());
+    return placed ? std::error_code{} : placed.error().code;
+  };
+  EXPECT_EQ(refusal([](auto& u) { u.removed = {PatchId{90}, PatchId{4}}; }), std::error_code{});
+  EXPECT_EQ(refusal([](auto& u) { u.removed = {PatchId{4}, PatchId{4}}; }), ReplicaError::kPatchUnknown);
+  EXPECT_EQ(refusal([](auto& u) { u.removed = {PatchId{5}}; }), ReplicaError::kPatchUnknown);
+  EXPECT_EQ(refusal([](auto& u) { u.removed = {PatchId{~0U}}; }), ReplicaError::kPatchUnknown);
+  EXPECT_EQ(refusal([](auto& u) { u.moved = {{PatchId{7}, {}}, {PatchId{4}, {}}}; }), std::error_code{});
+  EXPECT_EQ(refusal([](auto& u) {
+              u.moved = {{PatchId{7}, {}}, {PatchId{7}, {}}};
+            }),
+            ReplicaError::kPatchUnknown);
+  EXPECT_EQ(refusal([](auto& u) { u.moved = {{PatchId{6}, {}}}; }), ReplicaError::kPatchUnknown);
+  EXPECT_EQ(refusal([](auto& u) {
+              u.added = {{.id = PatchId{5}}};
+              u.moved = {{PatchId{5}, {}}};
+            }),
+            ReplicaError::kPatchUnknown);
+  EXPECT_EQ(refusal([](auto& u) {
+              u.removed = {PatchId{7}};
+              u.moved = {{PatchId{7}, {}}};
+            }),
+            ReplicaError::kPatchUnknown);
+  EXPECT_EQ(refusal([](auto& u) { u.added = {{.id = PatchId{5}}, {.id = PatchId{3}}}; }), std::error_code{});
+  EXPECT_EQ(refusal([](auto& u) { u.added = {{.id = PatchId{4}}}; }), ReplicaError::kPatchKnown);
+  EXPECT_EQ(refusal([](auto& u) {
+              u.removed = {PatchId{4}};
+              u.added = {{.id = PatchId{4}}};
+            }),
+            ReplicaError::kPatchKnown);
+}
+
 TEST_F(LayoutMirrorTest, TakesLevelsThatNoBlockHas) {
   // A hostile server asks for the impossible: the memory makes legal blocks of it.
   codec::MetaUpdate wild;
