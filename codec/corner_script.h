@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 
 namespace atlaswire::codec {
@@ -30,6 +31,10 @@ struct ExpectedCorner {
   std::array<GridOffset, 2> beside{};  ///< vertices whose coordinates may come again
   std::uint32_t scale = 0;             ///< bit length of the gate's edge, at most 17; 18, 19: no gate
   bool attached = false;
+  bool remembered = false;  ///< attached, and `at` is where shapes told before have it
+  /// In an attached corner's gate: to learn where it is.
+  std::optional<GateFrame> frame;
+  std::uint64_t key = 0;                             ///< ShapeMemory's
   std::array<GridOffset, GateModels::kWays> ways{};  ///< an attached corner could be foretold
   /// How far each was off lately; null: the corner is not attached.
   std::array<std::uint32_t, GateModels::kWays>* off = nullptr;
@@ -162,7 +167,7 @@ std::uint32_t CornerScript<Coder>::code(const ExpectedCorner& expected, std::spa
 /// expected.
 template <class Coder>
 GridPosition CornerScript<Coder>::code_position(const ExpectedCorner& expected, const GridPosition* wanted) {
-  PositionModels& models = models_->position[expected.attached ? 1 : 0];
+  PositionModels& models = models_->position[expected.remembered ? 2 : expected.attached ? 1 : 0];
   GridPosition position{0};
   std::uint32_t hits = 0;
   std::uint32_t size_class = 1;

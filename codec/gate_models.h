@@ -68,7 +68,7 @@ struct GateModels {
       gate;  ///< by nearness, how often refused, edge, its patch's triangles, own triangles
   std::array<AdaptiveTree<3>, 3 * 3 * 5> turn;  ///< by own triangles, those of the gate's patch, its edge
   std::array<AdaptiveBit, 3 * kDistanceClasses * 3 * 2> corner;
-  std::array<PositionModels, 2> position;    ///< without and with a gate
+  std::array<PositionModels, 3> position;    ///< alone, with a gate, remembered
   static constexpr std::uint32_t kWays = 3;  ///< to foretell an attached corner
   /// How far each was off lately: by own triangles, whether the gate's patch is one triangle, and which
   /// corner.

@@ -5,6 +5,7 @@
 #include "codec/gate_models.h"
 #include "codec/gate_table.h"
 #include "codec/resident_set.h"
+#include "codec/shape_memory.h"
 #include "codec/vertex_table.h"
 
 #include <cstdint>
@@ -20,6 +21,7 @@ struct GateState {
     residents.clear();
     vertices.clear();
     gates.clear();
+    shapes.clear();
     frame = {};
     hash = {};
   }
@@ -31,6 +33,7 @@ struct GateState {
   ResidentSet residents;
   VertexTable vertices;
   GateTable gates;
+  ShapeMemory shapes;
   FrameId frame{};
   RunningHash hash;
 };

@@ -69,6 +69,8 @@ class ShapeScript {
                        ExpectedCorner& expected);
   void expect_alone(const PatchShape& shape, std::uint32_t step, ExpectedCorner& expected);
 
+  /// The grid's largest coordinate.
+  [[nodiscard]] std::int32_t top() const { return static_cast<std::int32_t>((1U << limits_->grid_bits) - 1); }
   [[nodiscard]] Offset at(std::uint32_t vertex) const { return Offset(state_->vertices.position(vertex)); }
   bool fail(MetaError why) {
     error_ = why;
@@ -248,6 +250,7 @@ bool ShapeScript<Coder>::code_corners(const Attached& attached, const WantedPatc
     const std::uint32_t vertex =
         corners_.code(expected, std::span(taken).first(count), position_of(turn + step));
     if (vertex == kNone) return fail(corners_.error());
+    if (expected.frame) state_->shapes.learn(expected.key, *expected.frame, at(vertex));
     taken[count++] = shape.corners[(turn + step) % corners] = vertex;
   }
   return true;
@@ -266,8 +269,7 @@ ExpectedCorner ShapeScript<Coder>::expect(const Gate* gate, const PatchShape& sh
   } else {
     expect_alone(shape, step, expected);
   }
-  const auto top = static_cast<std::int32_t>((1U << limits_->grid_bits) - 1);
-  for (int axis = 0; axis < 3; ++axis) expected.at[axis] = std::clamp(expected.at[axis], 0, top);
+  for (int axis = 0; axis < 3; ++axis) expected.at[axis] = std::clamp(expected.at[axis], 0, top());
   return expected;
 }
 
@@ -307,6 +309,13 @@ void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& sha
   expected.off = &models_->off[situation];
   const auto best = std::ranges::min_element(*expected.off);
   expected.at = expected.ways[static_cast<std::size_t>(best - expected.off->begin())];
+  expected.frame = GateFrame::over(from, to, behind_from, behind_to);
+  if (expected.frame) {
+    expected.key = ShapeMemory::key_of(*expected.frame, situation);
+    const GateFrame::Place* const place = state_->shapes.recall(expected.key);
+    expected.remembered = place != nullptr;
+    if (place != nullptr) expected.at = expected.frame->position(*place, top());
+  }
   expected.beside = {to, from};
   expected.scale =
       std::min<std::uint32_t>(17, static_cast<std::uint32_t>(std::bit_width(grid_distance(from, to))));

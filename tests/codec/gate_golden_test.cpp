@@ -75,6 +75,25 @@ MetaUpdate third_update() {
   return update;
 }
 
+/// The first quad and the triangle beside it once more, elsewhere and turned: the shape is remembered.
+MetaUpdate fourth_update() {
+  MetaUpdate update;
+  update.frame = FrameId{10};
+  update.vertices = {{VertexId{7}, {1980, 1140, 50}},
+                     {VertexId{8}, {2040, 1220, 50}},
+                     {VertexId{9}, {1960, 1280, 50}},
+                     {VertexId{10}, {1900, 1200, 51}},
+                     {VertexId{11}, {2066, 1338, 60}}};
+  update.added = {{.id = PatchId{20},
+                   .triangles = 2,
+                   .corners = {VertexId{7}, VertexId{8}, VertexId{9}, VertexId{10}},
+                   .block = block_at(256)},
+                  {.id = PatchId{21},
+                   .corners = {VertexId{8}, VertexId{11}, VertexId{9}},
+                   .block = block_at(264)}};
+  return update;
+}
+
 TEST(GateMetaGolden, BytesStayAsTheyAre) {
   GateMetaEncoder encoder(limits_of(16));
   const auto bytes_of = [&](const MetaUpdate& update) {
@@ -85,6 +104,7 @@ TEST(GateMetaGolden, BytesStayAsTheyAre) {
   EXPECT_EQ(bytes_of(first_update()), "A300000007082BBCC8358DD548D4AE59FF75E509502948FD048EECBBA8");
   EXPECT_EQ(bytes_of(second_update()), "A2AB4F5A45E71D7B3EDC1847");
   EXPECT_EQ(bytes_of(third_update()), "A2E1FEE21F24DD5248F226AF0337E06F");
+  EXPECT_EQ(bytes_of(fourth_update()), "A22EF745ADF76F99C1F6519FBC35B320BDAD607C655B");
 }
 
 TEST(GateMetaGolden, UpdatesComeThrough) {
@@ -92,6 +112,7 @@ TEST(GateMetaGolden, UpdatesComeThrough) {
   ASSERT_NO_FATAL_FAILURE(stream.pass(first_update()));
   ASSERT_NO_FATAL_FAILURE(stream.pass(second_update()));
   ASSERT_NO_FATAL_FAILURE(stream.pass(third_update()));
+  ASSERT_NO_FATAL_FAILURE(stream.pass(fourth_update()));
 }
 
 /// Patches of one triangle over `count` points, each next to those before; `at` gives a point.
