@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/grid.h"
+#include "codec/forecast.h"
 #include "codec/gate_state.h"
 #include "codec/meta_update.h"
 
@@ -9,19 +10,10 @@
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
-#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 
 namespace atlaswire::codec {
-
-/// A grid position or a difference of two, in steps.
-using GridOffset = glm::ivec3;
-
-/// L1, in steps.
-inline std::uint32_t grid_distance(const GridOffset& a, const GridOffset& b) {
-  return static_cast<std::uint32_t>(std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z));
-}
 
 /// What is known of a new patch's corner when its turn comes.
 struct ExpectedCorner {
@@ -31,13 +23,10 @@ struct ExpectedCorner {
   std::array<GridOffset, 2> beside{};  ///< vertices whose coordinates may come again
   std::uint32_t scale = 0;             ///< bit length of the gate's edge, at most 17; 18, 19: no gate
   bool attached = false;
-  bool remembered = false;  ///< attached, and `at` is where shapes told before have it
-  /// In an attached corner's gate: to learn where it is.
-  std::optional<GateFrame> frame;
-  std::uint64_t key = 0;                             ///< ShapeMemory's
-  std::array<GridOffset, GateModels::kWays> ways{};  ///< an attached corner could be foretold
-  /// How far each was off lately; null: the corner is not attached.
-  std::array<std::uint32_t, GateModels::kWays>* off = nullptr;
+  bool remembered = false;           ///< attached, and `at` is where shapes told before have it
+  Forecast<3, 64> ways;              ///< from the gate alone
+  Forecast<2, 16> recall;            ///< from memory, and the best of those ways
+  std::optional<GateCorner> corner;  ///< for memory
 };
 
 /// One corner of a new patch, decision by decision, the same for both directions: a border vertex beside
@@ -74,7 +63,6 @@ class CornerScript {
   GridPosition code_position(const ExpectedCorner& expected, const GridPosition* wanted);
   std::int32_t code_residual(PositionModels& models, std::uint32_t scale, std::uint32_t& size_class,
                              std::int32_t value);
-  static void learn(const ExpectedCorner& expected, const GridPosition& position);
 
   [[nodiscard]] GridOffset at(std::uint32_t vertex) const {
     return GridOffset(state_->vertices.position(vertex));
@@ -151,7 +139,6 @@ std::uint32_t CornerScript<Coder>::code(const ExpectedCorner& expected, std::spa
   if (position.x > top || position.y > top || position.z > top) {
     return fail(MetaError::kBadPosition);
   }
-  if (expected.off != nullptr) learn(expected, position);
   const std::uint32_t vertex = state_->vertices.find(position);
   if (vertex != kNone) return vertex;
   if (state_->vertices.size() >= limits_->max_vertices) {
@@ -193,16 +180,6 @@ GridPosition CornerScript<Coder>::code_position(const ExpectedCorner& expected, 
     position[axis] = static_cast<std::uint32_t>(offered[0]) + static_cast<std::uint32_t>(residual);
   }
   return position;
-}
-
-/// Notes how far off each way to foretell the corner was.
-template <class Coder>
-void CornerScript<Coder>::learn(const ExpectedCorner& expected, const GridPosition& position) {
-  for (std::size_t way = 0; way < expected.ways.size(); ++way) {
-    const std::uint32_t missed = grid_distance(GridOffset(position), expected.ways[way]);
-    std::uint32_t& off = (*expected.off)[way];
-    off += 64 * static_cast<std::uint32_t>(std::bit_width(missed)) - off / 64;
-  }
 }
 
 /// `size_class` goes from axis to axis: how large the difference was for the scale.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/adaptive_models.h"
+#include "codec/forecast.h"
 #include "codec/resident_outlook.h"
 
 #include <array>
@@ -68,11 +69,11 @@ struct GateModels {
       gate;  ///< by nearness, how often refused, edge, its patch's triangles, own triangles
   std::array<AdaptiveTree<3>, 3 * 3 * 5> turn;  ///< by own triangles, those of the gate's patch, its edge
   std::array<AdaptiveBit, 3 * kDistanceClasses * 3 * 2> corner;
-  std::array<PositionModels, 3> position;    ///< alone, with a gate, remembered
-  static constexpr std::uint32_t kWays = 3;  ///< to foretell an attached corner
-  /// How far each was off lately: by own triangles, whether the gate's patch is one triangle, and which
-  /// corner.
-  std::array<std::array<std::uint32_t, kWays>, 3 * 2 * 3> off{};
+  std::array<PositionModels, 3> position;  ///< alone, with a gate, remembered
+  /// Ways to foretell an attached corner from its gate; and the best of them against shapes remembered. By
+  /// own triangles, whether the gate's patch is one triangle, and which corner.
+  std::array<Contest<3, 64>, 3 * 2 * 3> ways;
+  std::array<Contest<2, 16>, 3 * 2 * 3> recalls;
 
   // Where blocks are.
   AdaptiveBit aligned;

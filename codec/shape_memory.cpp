@@ -1,10 +1,11 @@
 #include "codec/shape_memory.h"
 
+#include "codec/forecast.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 
 namespace atlaswire::codec {
 
@@ -71,24 +72,23 @@ glm::ivec3 GateFrame::position(const Place& place, std::int32_t top) const {
   return position;
 }
 
-const GateFrame::Place* ShapeMemory::recall(std::uint64_t key) const {
+const GateFrame::Place* ShapeMemory::recall(const GateCorner& corner) const {
+  const std::uint64_t key = key_of(corner);
   const Entry& entry = entries_[home_of(key)];
   return entry.key == key && entry.holds ? &entry.place : nullptr;
 }
 
-void ShapeMemory::learn(std::uint64_t key, const GateFrame& frame, const glm::ivec3& position) {
+void ShapeMemory::learn(const GateCorner& corner, const glm::ivec3& position) {
+  const std::uint64_t key = key_of(corner);
   Entry& entry = entries_[home_of(key)];
   entry.holds = true;
   if (entry.key == key) {
     constexpr std::int32_t kFar = 1 << 21;
-    const glm::ivec3 foretold = frame.position(entry.place, kFar);
-    const auto missed =
-        static_cast<std::uint32_t>(std::abs(foretold.x - position.x) + std::abs(foretold.y - position.y) +
-                                   std::abs(foretold.z - position.z));
-    entry.holds = missed <= kMostMissed;
+    const glm::ivec3 foretold = corner.frame.position(entry.place, kFar);
+    entry.holds = grid_distance(foretold, position) <= kMostMissed;
   }
   entry.key = key;
-  entry.place = frame.place(position);
+  entry.place = corner.frame.place(position);
 }
 
 }  // namespace atlaswire::codec

@@ -36,19 +36,19 @@ class GateFrame {
   std::uint32_t lengths_ = 0;
 };
 
+/// A corner of a patch beyond a gate.
+struct GateCorner {
+  GateFrame frame;
+  std::uint32_t situation = 0;  ///< below 32: which corner of which patch beyond which
+};
+
 /// What surfaces did beyond gates of given lengths: a scene's repeated parts, whether instances or not, are
 /// foretold by the first that was told. As many places as kSize; a newer one takes an older one's.
 class ShapeMemory {
  public:
-  /// `situation` below 32: which corner of which patch beyond which.
-  static std::uint64_t key_of(const GateFrame& frame, std::uint32_t situation) {
-    return std::uint64_t{frame.lengths()} << 5U | situation;
-  }
-
-  /// Where the corner was at the last such gate; null: unknown, or it was not where the one before had it.
-  [[nodiscard]] const GateFrame::Place* recall(std::uint64_t key) const;
-  /// `position` is where the corner is at the gate.
-  void learn(std::uint64_t key, const GateFrame& frame, const glm::ivec3& position);
+  /// Where such a corner was last; null: unknown, or it was not where the one before had it.
+  [[nodiscard]] const GateFrame::Place* recall(const GateCorner& corner) const;
+  void learn(const GateCorner& corner, const glm::ivec3& position);
   void clear() { entries_.assign(kSize, {}); }
 
  private:
@@ -61,6 +61,9 @@ class ShapeMemory {
     bool holds = false;
   };
 
+  static std::uint64_t key_of(const GateCorner& corner) {
+    return std::uint64_t{corner.frame.lengths()} << 5U | corner.situation;
+  }
   static std::uint32_t home_of(std::uint64_t key) {
     return static_cast<std::uint32_t>(key * 0x9E3779B97F4A7C15U >> (64U - kSizeLog2));
   }

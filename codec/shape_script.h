@@ -67,6 +67,7 @@ class ShapeScript {
   }
   void expect_attached(const Gate& gate, const PatchShape& shape, std::uint32_t turn, std::uint32_t step,
                        ExpectedCorner& expected);
+  void expect_remembered(const GateCorner& corner, ExpectedCorner& expected);
   void expect_alone(const PatchShape& shape, std::uint32_t step, ExpectedCorner& expected);
 
   /// The grid's largest coordinate.
@@ -250,7 +251,9 @@ bool ShapeScript<Coder>::code_corners(const Attached& attached, const WantedPatc
     const std::uint32_t vertex =
         corners_.code(expected, std::span(taken).first(count), position_of(turn + step));
     if (vertex == kNone) return fail(corners_.error());
-    if (expected.frame) state_->shapes.learn(expected.key, *expected.frame, at(vertex));
+    expected.ways.learn(at(vertex));
+    expected.recall.learn(at(vertex));
+    if (expected.corner) state_->shapes.learn(*expected.corner, at(vertex));
     taken[count++] = shape.corners[(turn + step) % corners] = vertex;
   }
   return true;
@@ -287,11 +290,11 @@ void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& sha
     const Offset onward = to - behind_to;
     const Offset beside = from - behind_from;
     if (!from_triangle) {
-      expected.ways = {to + onward, to + beside, to + (onward + beside) / 2};
+      expected.ways.ways = {to + onward, to + beside, to + (onward + beside) / 2};
     } else if (corners == 3) {
-      expected.ways = {to + beside, to + onward, from + beside};
+      expected.ways.ways = {to + beside, to + onward, from + beside};
     } else {
-      expected.ways = {to + (onward + beside) / 2, to + beside, to + onward};
+      expected.ways.ways = {to + (onward + beside) / 2, to + beside, to + onward};
     }
   } else {
     const Offset first = at(shape.corners[(turn + 2) % corners]);
@@ -299,27 +302,34 @@ void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& sha
       stage = 2;
       const Offset bend = from_triangle ? Offset(0) : (from - to) - (behind_from - behind_to);
       const Offset own = from + (first - to);
-      expected.ways = {own, own + bend, own + bend / 2};
+      expected.ways.ways = {own, own + bend, own + bend / 2};
     } else {
       stage = 1;
-      expected.ways.fill(first + (from - to) / 2);
+      expected.ways.ways.fill(first + (from - to) / 2);
     }
   }
   const std::uint32_t situation = ((corners - 3) * 2 + static_cast<std::uint32_t>(from_triangle)) * 3 + stage;
-  expected.off = &models_->off[situation];
-  const auto best = std::ranges::min_element(*expected.off);
-  expected.at = expected.ways[static_cast<std::size_t>(best - expected.off->begin())];
-  expected.frame = GateFrame::over(from, to, behind_from, behind_to);
-  if (expected.frame) {
-    expected.key = ShapeMemory::key_of(*expected.frame, situation);
-    const GateFrame::Place* const place = state_->shapes.recall(expected.key);
-    expected.remembered = place != nullptr;
-    if (place != nullptr) expected.at = expected.frame->position(*place, top());
+  expected.ways.contest = &models_->ways[situation];
+  expected.at = expected.ways.best();
+  if (const auto frame = GateFrame::over(from, to, behind_from, behind_to)) {
+    expect_remembered({*frame, situation}, expected);
   }
   expected.beside = {to, from};
   expected.scale =
       std::min<std::uint32_t>(17, static_cast<std::uint32_t>(std::bit_width(grid_distance(from, to))));
   expected.attached = true;
+}
+
+/// Where shapes told before have the corner, unless such memories were further off of late than the best way.
+template <class Coder>
+void ShapeScript<Coder>::expect_remembered(const GateCorner& corner, ExpectedCorner& expected) {
+  expected.corner = corner;
+  const GateFrame::Place* const place = state_->shapes.recall(corner);
+  if (place == nullptr) return;
+  expected.recall = {&models_->recalls[corner.situation],
+                     {corner.frame.position(*place, top()), expected.at}};
+  expected.remembered = expected.recall.contest->best() == 0;
+  expected.at = expected.recall.best();
 }
 
 /// Where the nearest patch in number has its corner, moved as the corners before it moved.

@@ -1,9 +1,10 @@
 #include "codec/shape_memory.h"
 
+#include "codec/forecast.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
 
 namespace atlaswire::codec {
 namespace {
@@ -28,10 +29,6 @@ GateFrame frame_of(const Part& part) {
   return *GateFrame::over(part.from, part.to, part.behind_from, part.behind_to);
 }
 
-std::int32_t distance(const Point& a, const Point& b) {
-  return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z);
-}
-
 TEST(GateFrame, GivesAPlaceBack) {
   const GateFrame frame = frame_of(kPart);
   EXPECT_EQ(frame.position(frame.place(kPart.corner), kTop), kPart.corner);
@@ -50,7 +47,7 @@ TEST(GateFrame, TellsTurnedAndMovedCopiesAlike) {
   for (const Part& copy : copies) {
     const GateFrame other = frame_of(copy);
     EXPECT_EQ(other.lengths(), frame.lengths());
-    EXPECT_LE(distance(other.position(frame.place(kPart.corner), kTop), copy.corner), 6);
+    EXPECT_LE(grid_distance(other.position(frame.place(kPart.corner), kTop), copy.corner), 6U);
   }
 }
 
@@ -70,28 +67,26 @@ TEST(GateFrame, NeedsAnEdgeAndAnAreaBehindIt) {
 
 TEST(ShapeMemory, ForetellsWhatIsAsItWas) {
   ShapeMemory memory;
-  const GateFrame frame = frame_of(kPart);
-  const std::uint64_t key = ShapeMemory::key_of(frame, 4);
-  EXPECT_EQ(memory.recall(key), nullptr);
-  memory.learn(key, frame, kPart.corner);
-  ASSERT_NE(memory.recall(key), nullptr);
-  EXPECT_EQ(frame.position(*memory.recall(key), kTop), kPart.corner);
-  EXPECT_EQ(memory.recall(ShapeMemory::key_of(frame, 5)), nullptr);
+  const GateCorner corner{frame_of(kPart), 4};
+  EXPECT_EQ(memory.recall(corner), nullptr);
+  memory.learn(corner, kPart.corner);
+  ASSERT_NE(memory.recall(corner), nullptr);
+  EXPECT_EQ(corner.frame.position(*memory.recall(corner), kTop), kPart.corner);
+  EXPECT_EQ(memory.recall({corner.frame, 5}), nullptr);
   memory.clear();
-  EXPECT_EQ(memory.recall(key), nullptr);
+  EXPECT_EQ(memory.recall(corner), nullptr);
 }
 
 TEST(ShapeMemory, KeepsSilentAfterAMissUntilItHoldsAgain) {
   ShapeMemory memory;
-  const GateFrame frame = frame_of(kPart);
-  const std::uint64_t key = ShapeMemory::key_of(frame, 0);
+  const GateCorner corner{frame_of(kPart), 0};
   const Point elsewhere = kPart.corner + Point(0, 16, 0);
-  memory.learn(key, frame, kPart.corner);
-  memory.learn(key, frame, elsewhere);
-  EXPECT_EQ(memory.recall(key), nullptr);
-  memory.learn(key, frame, elsewhere + Point(5, 5, 5));
-  ASSERT_NE(memory.recall(key), nullptr);
-  EXPECT_EQ(frame.position(*memory.recall(key), kTop), elsewhere + Point(5, 5, 5));
+  memory.learn(corner, kPart.corner);
+  memory.learn(corner, elsewhere);
+  EXPECT_EQ(memory.recall(corner), nullptr);
+  memory.learn(corner, elsewhere + Point(5, 5, 5));
+  ASSERT_NE(memory.recall(corner), nullptr);
+  EXPECT_EQ(corner.frame.position(*memory.recall(corner), kTop), elsewhere + Point(5, 5, 5));
 }
 
 }  // namespace
