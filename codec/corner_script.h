@@ -88,7 +88,12 @@ void CornerScript<Coder>::offer(Offers& offers, const ExpectedCorner& expected,
     offers.list[i].kind = 1;
     return;
   }
-  offers.list[offers.count++] = {vertex, grid_distance(at(vertex), expected.at), 0};
+  const Offer made{vertex, grid_distance(at(vertex), expected.at), 0};
+  std::uint32_t place = offers.count++;
+  for (; place > 0 && offers.list[place - 1].distance > made.distance; --place) {
+    offers.list[place] = offers.list[place - 1];
+  }
+  offers.list[place] = made;
 }
 
 /// The border vertices next to those that are already corners, the likeliest first.
@@ -111,9 +116,6 @@ typename CornerScript<Coder>::Offers CornerScript<Coder>::offers_for(
       offer(offers, expected, taken, gates.gate(g).from);
     }
   }
-  const auto end = offers.list.begin() + offers.count;
-  std::stable_sort(offers.list.begin(), end,
-                   [](const Offer& a, const Offer& b) { return a.distance < b.distance; });
   offers.count = std::min(offers.count, 3U);
   return offers;
 }

@@ -48,7 +48,9 @@ struct GateModels {
   AdaptiveBit memory_reset;  ///< only where positions are derived
 
   // Who comes and goes.
-  std::array<AdaptiveBit, 3> calm_group;  ///< by whether the calm groups before stayed calm
+  /// By whether the calm groups before stayed calm, how calm, how many are visible (none, some, all), and the
+  /// patch before.
+  std::array<AdaptiveBit, 3 * 3 * 3 * 4> calm_group;
   /// By outlook, and the patch before: visible, and twice whether it came or went.
   std::array<AdaptiveBit, ResidentOutlook::kCount * 4> flip;
   std::array<AdaptiveBit, 3> change_group;

@@ -35,9 +35,6 @@ class PresenceScript {
   bool code(std::vector<std::uint32_t>& hidden, std::vector<Placement>& placements);
 
  private:
-  static constexpr std::uint32_t kGroup = 8;
-  static constexpr std::uint8_t kCalm = 32;
-
   /// Of one group, a bit each: visible before, and coming or going now.
   struct Flips {
     std::uint32_t was_visible = 0;
@@ -49,25 +46,27 @@ class PresenceScript {
   bool code_changes(std::uint32_t first, const Flips& flips);
   bool place(std::uint32_t resident, Placement::Why why);
   [[nodiscard]] const Block* target(std::uint32_t resident) const {
-    return targets_.empty() ? nullptr : targets_[resident];
+    return Coder::kEncodes ? targets_[resident] : nullptr;
   }
   [[nodiscard]] bool wants_flip(std::uint32_t resident) const {
-    return !targets_.empty() && (targets_[resident] != nullptr) != state_->residents.visible(resident);
+    return Coder::kEncodes && (target(resident) != nullptr) != state_->residents.visible(resident);
   }
   [[nodiscard]] bool wants_change(std::uint32_t resident) const {
-    return target(resident) != nullptr && *target(resident) != state_->residents.block(resident);
+    const Block* const wanted = target(resident);
+    const Block* const has = &state_->residents.block(resident);
+    return wanted != nullptr && wanted != has && *wanted != *has;
   }
   /// Whether an encoder wants `what` of any resident whose bit is set.
   template <class Want>
   [[nodiscard]] bool wants_any(std::uint32_t bits, Want what) const {
-    if (targets_.empty()) return false;
+    if (!Coder::kEncodes) return false;
     for (; bits != 0; bits &= bits - 1) {
       if (what(static_cast<std::uint32_t>(std::countr_zero(bits)))) return true;
     }
     return false;
   }
   static std::uint32_t age_of(std::uint8_t calm) {
-    return static_cast<std::uint32_t>(calm >= kCalm / 2) + static_cast<std::uint32_t>(calm >= kCalm);
+    return static_cast<std::uint32_t>(calm >= 16) + static_cast<std::uint32_t>(calm >= 32);
   }
   static std::uint32_t next_flow(std::uint32_t flow, bool yes) { return yes ? 2 : flow == 2 ? 1 : 0; }
 
@@ -87,8 +86,8 @@ bool PresenceScript<Coder>::code(std::vector<std::uint32_t>& hidden, std::vector
   hidden_ = &hidden;
   placements_ = &placements;
   const std::uint32_t size = state_->residents.size();
-  for (std::uint32_t first = 0; first < size; first += kGroup) {
-    const std::uint32_t count = std::min(size - first, kGroup);
+  for (std::uint32_t first = 0; first < size; first += ResidentSet::kGroup) {
+    const std::uint32_t count = std::min(size - first, ResidentSet::kGroup);
     const Flips flips = code_flips(first, count);
     state_->residents.note(first, count, flips.flip);
     if (!code_changes(first, flips)) return false;
@@ -100,16 +99,12 @@ template <class Coder>
 typename PresenceScript<Coder>::Flips PresenceScript<Coder>::code_flips(std::uint32_t first,
                                                                         std::uint32_t count) {
   const ResidentSet& residents = state_->residents;
-  Flips flips;
-  std::uint8_t least_calm = 255;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    least_calm = std::min(least_calm, residents.calm(first + i));
-    flips.was_visible |= static_cast<std::uint32_t>(residents.visible(first + i)) << i;
-  }
-  if (least_calm >= kCalm) {
-    const bool any =
-        coder_->code(models_->calm_group[calm_flow_],
-                     wants_any((1U << count) - 1, [&](auto i) { return wants_flip(first + i); }));
+  Flips flips{.was_visible = residents.visible_in(first, count)};
+  if (const std::uint32_t calm = residents.calm_in(first, count); calm > 0) {
+    const std::uint32_t all = (1U << count) - 1;
+    const std::uint32_t seen = flips.was_visible == 0 ? 0 : flips.was_visible == all ? 2 : 1;
+    const bool any = coder_->code(models_->calm_group[((calm_flow_ * 3 + calm - 1) * 3 + seen) * 4 + before_],
+                                  wants_any(all, [&](auto i) { return wants_flip(first + i); }));
     calm_flow_ = next_flow(calm_flow_, any);
     if (!any) {
       before_ = flips.was_visible >> (count - 1);

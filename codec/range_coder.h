@@ -20,9 +20,9 @@ class AdaptiveBit {
   }
   void update(bool bit) {
     const std::int32_t target = bit ? 0 : 65535;
-    const std::uint32_t fast_step = seen_ < kFastLimit ? seen_ : kFastLimit;
-    fast_ = toward(fast_, target, kRates[fast_step]);
-    slow_ = toward(slow_, target, kRates[seen_]);
+    const Rates& rates = kRates[seen_];
+    fast_ = toward(fast_, target, rates.fast);
+    slow_ = toward(slow_, target, rates.slow);
     if (seen_ < kSlowLimit) ++seen_;
   }
 
@@ -30,12 +30,18 @@ class AdaptiveBit {
 
  private:
   static constexpr std::uint32_t kLeast = 16;
-  static constexpr std::uint16_t kFastLimit = 18;
+  static constexpr std::int32_t kFastLimit = 18;
   static constexpr std::uint16_t kSlowLimit = 127;
   /// 1 / (n + 2) in 32768ths.
-  static constexpr std::array<std::int32_t, kSlowLimit + 1> kRates = [] {
-    std::array<std::int32_t, kSlowLimit + 1> rates{};
-    for (std::int32_t n = 0; n <= kSlowLimit; ++n) rates[static_cast<std::size_t>(n)] = 32768 / (n + 2);
+  struct Rates {
+    std::int32_t fast;
+    std::int32_t slow;
+  };
+  static constexpr std::array<Rates, kSlowLimit + 1> kRates = [] {
+    std::array<Rates, kSlowLimit + 1> rates{};
+    for (std::int32_t n = 0; n <= kSlowLimit; ++n) {
+      rates[static_cast<std::size_t>(n)] = {32768 / ((n < kFastLimit ? n : kFastLimit) + 2), 32768 / (n + 2)};
+    }
     return rates;
   }();
 

@@ -3,7 +3,9 @@
 #include "base/block.h"
 #include "base/ids.h"
 #include "base/patch_layout.h"
+#include "codec/octet_group.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -46,7 +48,12 @@ class ResidentSet {
   /// Index of the first patch whose id is not below `id`.
   [[nodiscard]] std::uint32_t lower_bound(PatchId id) const;
 
-  /// Notes which of `count` patches from `first` on come or go in this update, a bit each; at most 32.
+  // Of a group: `count` patches from `first` on, at most kGroup; a bit each, the first's lowest.
+  static constexpr std::uint32_t kGroup = OctetGroup::kSize;
+  [[nodiscard]] std::uint32_t visible_in(std::uint32_t first, std::uint32_t count) const;
+  /// How calm all of them are: 0: below 8, 1: from 8 on, 2: from 16, 3: from 32.
+  [[nodiscard]] std::uint32_t calm_in(std::uint32_t first, std::uint32_t count) const;
+  /// Notes which come or go in this update.
   void note(std::uint32_t first, std::uint32_t count, std::uint32_t flips);
   /// Takes in patches, visible now; ascending, none known before.
   void merge(std::span<const NewResident> arrivals);
@@ -68,19 +75,35 @@ class ResidentSet {
   std::uint32_t visible_ = 0;
 };
 
+inline std::uint32_t ResidentSet::visible_in(std::uint32_t first, std::uint32_t count) const {
+  if (count == kGroup) return OctetGroup::load(&histories_[first]).lowest_bits();
+  std::uint32_t bits = 0;
+  for (std::uint32_t i = 0; i < count; ++i) bits |= static_cast<std::uint32_t>(visible(first + i)) << i;
+  return bits;
+}
+
+inline std::uint32_t ResidentSet::calm_in(std::uint32_t first, std::uint32_t count) const {
+  if (count == kGroup) return OctetGroup::load(&calms_[first]).all_from_8_16_32();
+  const auto begin = calms_.begin() + first;
+  const std::uint32_t least = *std::min_element(begin, begin + count);
+  return least < 8 ? 0 : least < 16 ? 1 : least < 32 ? 2 : 3;
+}
+
 inline void ResidentSet::note(std::uint32_t first, std::uint32_t count, std::uint32_t flips) {
-  std::uint8_t* const histories = histories_.data() + first;
-  std::uint8_t* const calms = calms_.data() + first;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t history = histories[i];
-    histories[i] = static_cast<std::uint8_t>(history << 1U | (history & 1U));
-    calms[i] = static_cast<std::uint8_t>(calms[i] + static_cast<std::uint8_t>(calms[i] != 255));
+  if (count == kGroup) {
+    OctetGroup::load(&histories_[first]).repeated().store(&histories_[first]);
+    OctetGroup::load(&calms_[first]).counted().store(&calms_[first]);
+  } else {
+    for (std::uint32_t i = first; i < first + count; ++i) {
+      histories_[i] = static_cast<std::uint8_t>(histories_[i] << 1U | (histories_[i] & 1U));
+      if (calms_[i] != 255) ++calms_[i];
+    }
   }
   for (; flips != 0; flips &= flips - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(flips));
-    histories[i] ^= 1U;
-    calms[i] = 0;
-    (histories[i] & 1U) != 0 ? ++visible_ : --visible_;
+    const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(flips));
+    histories_[i] ^= 1U;
+    calms_[i] = 0;
+    visible(i) ? ++visible_ : --visible_;
   }
 }
 

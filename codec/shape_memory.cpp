@@ -73,21 +73,22 @@ glm::ivec3 GateFrame::position(const Place& place, std::int32_t top) const {
 }
 
 const GateFrame::Place* ShapeMemory::recall(const GateCorner& corner) const {
-  const std::uint64_t key = key_of(corner);
-  const Entry& entry = entries_[home_of(key)];
-  return entry.key == key && entry.holds ? &entry.place : nullptr;
+  const Key key = key_of(corner);
+  const Entry& entry = entries_[key.entry];
+  return entry.check == key.check && entry.holds ? &entry.place : nullptr;
 }
 
 void ShapeMemory::learn(const GateCorner& corner, const glm::ivec3& position) {
-  const std::uint64_t key = key_of(corner);
-  Entry& entry = entries_[home_of(key)];
+  const Key key = key_of(corner);
+  Entry& entry = entries_[key.entry];
   entry.holds = true;
-  if (entry.key == key) {
+  if (entry.known && entry.check == key.check) {
     constexpr std::int32_t kFar = 1 << 21;
     const glm::ivec3 foretold = corner.frame.position(entry.place, kFar);
     entry.holds = grid_distance(foretold, position) <= kMostMissed;
   }
-  entry.key = key;
+  entry.known = true;
+  entry.check = key.check;
   entry.place = corner.frame.place(position);
 }
 

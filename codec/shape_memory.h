@@ -56,16 +56,22 @@ class ShapeMemory {
   static constexpr std::uint32_t kSize = 1U << kSizeLog2;
   static constexpr std::uint32_t kMostMissed = 15;  ///< steps, L1
   struct Entry {
-    std::uint64_t key = ~std::uint64_t{0};
     GateFrame::Place place{};
+    std::uint16_t check = 0;
+    bool known = false;
     bool holds = false;
   };
+  /// Where a corner's entry is, and what tells it from others there.
+  struct Key {
+    std::uint32_t entry;
+    std::uint16_t check;
+  };
 
-  static std::uint64_t key_of(const GateCorner& corner) {
-    return std::uint64_t{corner.frame.lengths()} << 5U | corner.situation;
-  }
-  static std::uint32_t home_of(std::uint64_t key) {
-    return static_cast<std::uint32_t>(key * 0x9E3779B97F4A7C15U >> (64U - kSizeLog2));
+  static Key key_of(const GateCorner& corner) {
+    const std::uint64_t key = std::uint64_t{corner.frame.lengths()} << 5U | corner.situation;
+    const std::uint64_t scattered = key * 0x9E3779B97F4A7C15U;
+    return {static_cast<std::uint32_t>(scattered >> (64U - kSizeLog2)),
+            static_cast<std::uint16_t>(scattered >> 32U)};
   }
 
   std::vector<Entry> entries_ = std::vector<Entry>(kSize);
