@@ -1,13 +1,15 @@
 #include "codec/gate_table.h"
 
+#include <algorithm>
+#include <cstddef>
+
 namespace atlaswire::codec {
 
 void GateTable::clear() {
   index_.clear();
   links_.clear();
   unused_.clear();
-  leaving_.clear();
-  arriving_.clear();
+  ends_.clear();
 }
 
 void GateTable::add(const Outline& patch) {
@@ -45,8 +47,10 @@ void GateTable::open(const Gate& gate) {
     unused_.pop_back();
   }
   links_[number] = {.gate = gate};
-  link(leaving_, &Linked::leaving, gate.from, number);
-  link(arriving_, &Linked::arriving, gate.to, number);
+  const std::uint32_t last = std::max(gate.from, gate.to);
+  if (last >= ends_.size()) ends_.resize(std::size_t{last} + 1);
+  link(links_, &Linked::leaving, ends_[gate.from].leaving, number);
+  link(links_, &Linked::arriving, ends_[gate.to].arriving, number);
   index_overflow(gate.from);
 }
 
@@ -63,26 +67,26 @@ void GateTable::index_overflow(std::uint32_t vertex) {
 void GateTable::close(std::uint32_t number) {
   const Gate gate = links_[number].gate;
   if (links_[number].indexed) index_.erase(key_of(gate.from, gate.to));
-  unlink(leaving_, &Linked::leaving, gate.from, number);
-  unlink(arriving_, &Linked::arriving, gate.to, number);
+  unlink(links_, &Linked::leaving, ends_[gate.from].leaving, number);
+  unlink(links_, &Linked::arriving, ends_[gate.to].arriving, number);
   unused_.push_back(number);
 }
 
-void GateTable::link(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number) {
-  if (vertex >= heads.size()) heads.resize(std::size_t{vertex} + 1, kNone);
-  const std::uint32_t next = heads[vertex];
-  links_[number].*list = {.next = next};
-  if (next != kNone) (links_[next].*list).previous = number;
-  heads[vertex] = number;
+void GateTable::link(std::vector<Linked>& links, Link Linked::*list, std::uint32_t& first,
+                     std::uint32_t number) {
+  links[number].*list = {.next = first};
+  if (first != kNone) (links[first].*list).previous = number;
+  first = number;
 }
 
-void GateTable::unlink(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number) {
-  const Link link = links_[number].*list;
-  if (link.next != kNone) (links_[link.next].*list).previous = link.previous;
+void GateTable::unlink(std::vector<Linked>& links, Link Linked::*list, std::uint32_t& first,
+                       std::uint32_t number) {
+  const Link link = links[number].*list;
+  if (link.next != kNone) (links[link.next].*list).previous = link.previous;
   if (link.previous != kNone) {
-    (links_[link.previous].*list).next = link.next;
+    (links[link.previous].*list).next = link.next;
   } else {
-    heads[vertex] = link.next;
+    first = link.next;
   }
 }
 

@@ -53,10 +53,12 @@ class GateTable {
   }
 
   /// Gates that leave a vertex or arrive at it, the latest first; kNone ends the lists.
-  [[nodiscard]] std::uint32_t first_leaving(std::uint32_t vertex) const { return first_of(leaving_, vertex); }
+  [[nodiscard]] std::uint32_t first_leaving(std::uint32_t vertex) const {
+    return vertex < ends_.size() ? ends_[vertex].leaving : kNone;
+  }
   [[nodiscard]] std::uint32_t next_leaving(std::uint32_t number) const { return links_[number].leaving.next; }
   [[nodiscard]] std::uint32_t first_arriving(std::uint32_t vertex) const {
-    return first_of(arriving_, vertex);
+    return vertex < ends_.size() ? ends_[vertex].arriving : kNone;
   }
   [[nodiscard]] std::uint32_t next_arriving(std::uint32_t number) const {
     return links_[number].arriving.next;
@@ -73,13 +75,14 @@ class GateTable {
     Link arriving;
     bool indexed = false;
   };
-  using Heads = std::vector<std::uint32_t>;
+  /// The first of a vertex's lists.
+  struct Ends {
+    std::uint32_t leaving = kNone;
+    std::uint32_t arriving = kNone;
+  };
 
   static std::uint64_t key_of(std::uint32_t from, std::uint32_t to) {
     return std::uint64_t{from} << 32U | to;
-  }
-  static std::uint32_t first_of(const Heads& heads, std::uint32_t vertex) {
-    return vertex < heads.size() ? heads[vertex] : kNone;
   }
   /// Gates that leave a vertex and are looked through; those behind them in the list are in the index, for
   /// they may be many.
@@ -88,14 +91,15 @@ class GateTable {
   void open(const Gate& gate);
   void index_overflow(std::uint32_t vertex);
   void close(std::uint32_t number);
-  void link(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number);
-  void unlink(Heads& heads, Link Linked::*list, std::uint32_t vertex, std::uint32_t number);
+  static void link(std::vector<Linked>& links, Link Linked::*list, std::uint32_t& first,
+                   std::uint32_t number);
+  static void unlink(std::vector<Linked>& links, Link Linked::*list, std::uint32_t& first,
+                     std::uint32_t number);
 
   FlatIndex index_;
   std::vector<Linked> links_;
   std::vector<std::uint32_t> unused_;  ///< numbers
-  Heads leaving_;                      ///< by vertex
-  Heads arriving_;
+  std::vector<Ends> ends_;             ///< by vertex
 };
 
 }  // namespace atlaswire::codec
