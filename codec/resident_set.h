@@ -95,7 +95,8 @@ inline void ResidentSet::note(std::uint32_t first, std::uint32_t count, std::uin
     OctetGroup::load(&calms_[first]).counted().store(&calms_[first]);
   } else {
     for (std::uint32_t i = first; i < first + count; ++i) {
-      histories_[i] = static_cast<std::uint8_t>(histories_[i] << 1U | (histories_[i] & 1U));
+      const std::uint32_t history = histories_[i];
+      histories_[i] = static_cast<std::uint8_t>(history << 1U | (history & 1U));
       if (calms_[i] != 255) ++calms_[i];
     }
   }

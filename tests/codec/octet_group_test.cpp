@@ -31,7 +31,8 @@ TEST(OctetGroup, DoesWhatOneByOneWould) {
     for (std::uint32_t i = 0; i < OctetGroup::kSize; ++i) {
       bits |= (octets[i] & 1U) << i;
       if (counted[i] != 255) ++counted[i];
-      repeated[i] = static_cast<std::uint8_t>(octets[i] << 1U | (octets[i] & 1U));
+      const std::uint32_t octet = octets[i];
+      repeated[i] = static_cast<std::uint8_t>(octet << 1U | (octet & 1U));
     }
     EXPECT_EQ(group.lowest_bits(), bits);
     const std::uint8_t least = *std::ranges::min_element(octets);
