@@ -211,18 +211,21 @@ void GateScript<Coder>::report(MetaUpdate& effect, std::uint32_t first_vertex) {
     std::ranges::transform(shape.corners, added.corners.begin(), [](std::uint32_t v) { return VertexId{v}; });
     effect.added.push_back(added);
   };
+  auto arrival = arrivals_.begin();
+  const auto add_arrivals_below = [&](PatchId id) {
+    for (; arrival != arrivals_.end() && arrival->id < id; ++arrival)
+      add(arrival->id, arrival->shape, arrival->block);
+  };
   for (const Placement& p : placements_) {
     const PatchId id = residents.id(p.resident);
     if (p.why == Placement::Why::kChanged) {
       effect.moved.push_back({id, p.block});
     } else {
+      add_arrivals_below(id);
       add(id, residents.shape(p.resident), p.block);
     }
   }
-  const auto shown = static_cast<std::ptrdiff_t>(effect.added.size());
-  for (const NewResident& arrival : arrivals_) add(arrival.id, arrival.shape, arrival.block);
-  std::inplace_merge(effect.added.begin(), effect.added.begin() + shown, effect.added.end(),
-                     [](const AddedPatch& a, const AddedPatch& b) { return a.id < b.id; });
+  for (; arrival != arrivals_.end(); ++arrival) add(arrival->id, arrival->shape, arrival->block);
 }
 
 }  // namespace atlaswire::codec

@@ -111,9 +111,11 @@ typename PresenceScript<Coder>::Flips PresenceScript<Coder>::code_flips(std::uin
       return flips;
     }
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t context = ResidentOutlook::of(residents, first + i) * 4 + before_;
-    before_ = flips.was_visible >> i & 1U;
+  const bool follows = first + count < residents.size() && residents.visible(first + count);
+  std::uint32_t visible = flips.was_visible | static_cast<std::uint32_t>(follows) << count;
+  for (std::uint32_t i = 0; i < count; ++i, visible >>= 1U) {
+    const std::uint32_t context = ResidentOutlook::of(residents, first + i, visible >> 1U & 1U) * 4 + before_;
+    before_ = visible & 1U;
     // A branch, so that processors guess it and go on with the next context.
     if (coder_->code(models_->flip[context], wants_flip(first + i))) [[unlikely]] {
       before_ = 3 - before_;

@@ -16,13 +16,12 @@ class ResidentOutlook {
  public:
   static constexpr std::uint32_t kCount = 11 * 6 * 4 * 2;
 
-  /// Below kCount.
-  static std::uint32_t of(const ResidentSet& residents, std::uint32_t index) {
+  /// Below kCount. `next_visible`: 0 or 1, of the one behind it.
+  static std::uint32_t of(const ResidentSet& residents, std::uint32_t index, std::uint32_t next_visible) {
     const Block& block = residents.block(index);
-    const bool next_visible = index + 1 < residents.size() && residents.visible(index + 1);
     const std::uint32_t unrest = kCalm[residents.calm(index)] * 6U + kUnrest[residents.history(index)];
     const std::uint32_t area = kArea[(block.width_log2 + block.height_log2) & 31U];
-    return (unrest * 4 + area) * 2 + static_cast<std::uint32_t>(next_visible);
+    return (unrest * 4 + area) * 2 + next_visible;
   }
 
  private:
