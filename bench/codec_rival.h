@@ -28,8 +28,11 @@ class CodecRival {
   [[nodiscard]] virtual std::string name() const = 0;
   /// The next update, kept for `decode`.
   virtual void encode(const Increment& increment) = 0;
-  /// Of the last update.
+  /// Of the last update; of a message that holds both all is mesh, until `split`.
   [[nodiscard]] virtual UpdateCost cost() const = 0;
+  /// Parts what each update of the run took, for a codec whose messages hold both. Behind the run: it is work
+  /// of its own, and would push the codec out of the caches.
+  virtual void split(const std::vector<codec::MetaUpdate>&, std::vector<UpdateCost>&) const {}
   /// Decodes the last update. Throws std::runtime_error where that fails.
   virtual void decode() = 0;
   /// What was decoded, until `place`; of a codec of meshes alone what was told.

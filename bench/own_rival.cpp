@@ -5,8 +5,10 @@
 #include "client/layout_mirror.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 namespace atlaswire::bench {
 
@@ -16,9 +18,9 @@ class OwnRival final : public CodecRival {
  public:
   OwnRival(codec::MetaCodecKind kind, const MetaRecording& recording)
       : kind_(kind),
+        limits_(recording.limits),
         encoder_(make_meta_encoder(kind, recording.limits)),
         decoder_(make_meta_decoder(kind, recording.limits)) {
-    if (codec::keeps_state(kind)) profile_.emplace(recording.limits);
     if (codec::leaves_positions(kind)) {
       mirror_.emplace(recording.memory, recording.limits.atlas, recording.limits.max_patches);
     }
@@ -28,13 +30,16 @@ class OwnRival final : public CodecRival {
     update_ = increment.update;
     bytes_.clear();
     encoder_->encode(*update_, bytes_);
-    counted_ = false;
   }
-  [[nodiscard]] UpdateCost cost() const override {
-    if (!profile_) return {bytes_.size(), 0};
-    if (!counted_) mesh_ = static_cast<std::size_t>(mesh_octets(profile_->encode(*update_)) + 0.5);
-    counted_ = true;
-    return {std::min(mesh_, bytes_.size()), bytes_.size() - std::min(mesh_, bytes_.size())};
+  [[nodiscard]] UpdateCost cost() const override { return {bytes_.size(), 0}; }
+  void split(const std::vector<codec::MetaUpdate>& updates, std::vector<UpdateCost>& costs) const override {
+    if (!codec::keeps_state(kind_)) return;
+    GateProfile profile(limits_);
+    for (std::size_t i = 0; i < updates.size(); ++i) {
+      const std::size_t all = costs[i].mesh;
+      const auto mesh = static_cast<std::size_t>(mesh_octets(profile.encode(updates[i])) + 0.5);
+      costs[i] = {std::min(mesh, all), all - std::min(mesh, all)};
+    }
   }
   void decode() override {
     auto heard = decoder_->decode(bytes_);
@@ -58,12 +63,10 @@ class OwnRival final : public CodecRival {
 
  private:
   codec::MetaCodecKind kind_;
+  codec::MetaLimits limits_;
   std::unique_ptr<codec::MetaEncoder> encoder_;
   std::unique_ptr<codec::MetaDecoder> decoder_;
   std::optional<client::LayoutMirror> mirror_;
-  mutable std::optional<GateProfile> profile_;  // outside the timed calls
-  mutable bool counted_ = false;
-  mutable std::size_t mesh_ = 0;
   const codec::MetaUpdate* update_ = nullptr;
   ByteBuffer bytes_;
   codec::MetaUpdate heard_;

@@ -1,9 +1,11 @@
 #include "bench/stream_run.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <ctime>
 #include <numeric>
 #include <optional>
+#include <vector>
 
 namespace atlaswire::bench {
 
@@ -26,6 +28,12 @@ double time_of(Call call) {
 /// One number an update.
 using Series = std::vector<double>;
 
+Series series_of(const std::vector<UpdateCost>& costs, std::size_t UpdateCost::*part) {
+  Series series(costs.size());
+  std::ranges::transform(costs, series.begin(),
+                         [&](const UpdateCost& c) { return static_cast<double>(c.*part); });
+  return series;
+}
 Series later(const Series& all) { return {all.begin() + 1, all.end()}; }
 double mean(const Series& all) {
   return all.empty() ? 0 : std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
@@ -81,24 +89,27 @@ Row run_stream(CodecRival& rival, const std::string& stream, const MetaRecording
   std::optional<MotionRun> motion;
   if (recording.motion) motion.emplace(rival.motions(*recording.motion), *recording.motion);
   IncrementMaker maker;
-  Costs costs;
-  Series mesh;
-  Series blocks;
+  std::vector<Increment> increments;
   double triangles = 0;
   for (const codec::MetaUpdate& update : recording.updates) {
-    const Increment increment = maker.next(update);
+    increments.push_back(maker.next(update));
+    triangles += IncrementMaker::added_triangles(update);
+  }
+  Costs costs;
+  std::vector<UpdateCost> sizes;
+  for (const Increment& increment : increments) {
     costs.encode.push_back(time_of([&] { rival.encode(increment); }));
     costs.decode.push_back(time_of([&] { rival.decode(); }));
     rival.check();
-    if (motion) motion->next(update, rival.heard());
+    if (motion) motion->next(*increment.update, rival.heard());
     costs.decode.back() += time_of([&] { rival.place(); });
-    const UpdateCost cost = rival.cost();
-    mesh.push_back(static_cast<double>(cost.mesh));
-    blocks.push_back(static_cast<double>(cost.blocks));
-    triangles += IncrementMaker::added_triangles(update);
-    if (mesh.size() == 1) row.first = cost;
+    sizes.push_back(rival.cost());
   }
-  if (mesh.empty()) return row;
+  if (sizes.empty()) return row;
+  rival.split(recording.updates, sizes);
+  row.first = sizes.front();
+  const Series mesh = series_of(sizes, &UpdateCost::mesh);
+  const Series blocks = series_of(sizes, &UpdateCost::blocks);
   row.bits_a_triangle = 8 * std::accumulate(mesh.begin(), mesh.end(), 0.0) / std::max(1.0, triangles);
   row.mesh = mean(later(mesh));
   row.blocks = mean(later(blocks));
