@@ -10,7 +10,7 @@ namespace atlaswire::codec {
 
 /// What is known of one recurring yes-or-no decision: the mean of a fast and a slow estimate of how often it
 /// is "no". Both start as the running mean of what came (rate 1 / (n + 2), as Krichevsky and Trofimov have
-/// it) and settle at rates of 1/20 and 1/129. docs/PROTOCOL.md, "Range coding".
+/// it) and settle at rates of 1/16 and 1/128. docs/PROTOCOL.md, "Range coding".
 class AdaptiveBit {
  public:
   /// Probability of false in 32768ths, 16..32752, so that no decision costs more than 11 bits.
@@ -20,28 +20,26 @@ class AdaptiveBit {
   }
   void update(bool bit) {
     const std::int32_t target = bit ? 0 : 65535;
-    const Rates& rates = kRates[seen_];
-    fast_ = toward(fast_, target, rates.fast);
-    slow_ = toward(slow_, target, rates.slow);
-    if (seen_ < kSlowLimit) ++seen_;
+    if (seen_ == kSettled) [[likely]] {  // as below, with rates that are shifts
+      fast_ = static_cast<std::uint16_t>(fast_ + ((target - fast_) >> 4));
+      slow_ = static_cast<std::uint16_t>(slow_ + ((target - slow_) >> 7));
+      return;
+    }
+    fast_ = toward(fast_, target, kRates[seen_ < kFastLimit ? seen_ : kFastLimit]);
+    slow_ = toward(slow_, target, kRates[seen_]);
+    ++seen_;
   }
 
   static constexpr std::uint32_t kOne = 32768;
 
  private:
   static constexpr std::uint32_t kLeast = 16;
-  static constexpr std::int32_t kFastLimit = 18;
-  static constexpr std::uint16_t kSlowLimit = 127;
+  static constexpr std::uint16_t kFastLimit = 14;
+  static constexpr std::uint16_t kSettled = 126;
   /// 1 / (n + 2) in 32768ths.
-  struct Rates {
-    std::int32_t fast;
-    std::int32_t slow;
-  };
-  static constexpr std::array<Rates, kSlowLimit + 1> kRates = [] {
-    std::array<Rates, kSlowLimit + 1> rates{};
-    for (std::int32_t n = 0; n <= kSlowLimit; ++n) {
-      rates[static_cast<std::size_t>(n)] = {32768 / ((n < kFastLimit ? n : kFastLimit) + 2), 32768 / (n + 2)};
-    }
+  static constexpr std::array<std::int32_t, kSettled> kRates = [] {
+    std::array<std::int32_t, kSettled> rates{};
+    for (std::int32_t n = 0; n < kSettled; ++n) rates[static_cast<std::size_t>(n)] = 32768 / (n + 2);
     return rates;
   }();
 

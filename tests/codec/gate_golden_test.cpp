@@ -84,13 +84,12 @@ MetaUpdate fourth_update() {
                      {VertexId{9}, {1960, 1280, 50}},
                      {VertexId{10}, {1900, 1200, 51}},
                      {VertexId{11}, {2066, 1338, 60}}};
-  update.added = {{.id = PatchId{20},
-                   .triangles = 2,
-                   .corners = {VertexId{7}, VertexId{8}, VertexId{9}, VertexId{10}},
-                   .block = block_at(256)},
-                  {.id = PatchId{21},
-                   .corners = {VertexId{8}, VertexId{11}, VertexId{9}},
-                   .block = block_at(264)}};
+  update.added = {
+      {.id = PatchId{20},
+       .triangles = 2,
+       .corners = {VertexId{7}, VertexId{8}, VertexId{9}, VertexId{10}},
+       .block = block_at(256)},
+      {.id = PatchId{21}, .corners = {VertexId{8}, VertexId{11}, VertexId{9}}, .block = block_at(264)}};
   return update;
 }
 
