@@ -73,12 +73,14 @@ glm::ivec3 GateFrame::position(const Place& place, std::int32_t top) const {
 }
 
 const GateFrame::Place* ShapeMemory::recall(const GateCorner& corner) const {
+  if (entries_.empty()) return nullptr;
   const Key key = key_of(corner);
   const Entry& entry = entries_[key.entry];
   return entry.check == key.check && entry.holds ? &entry.place : nullptr;
 }
 
 void ShapeMemory::learn(const GateCorner& corner, const glm::ivec3& position) {
+  if (entries_.empty()) entries_.resize(kSize);
   const Key key = key_of(corner);
   Entry& entry = entries_[key.entry];
   entry.holds = true;

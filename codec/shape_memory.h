@@ -49,7 +49,7 @@ class ShapeMemory {
   /// Where such a corner was last; null: unknown, or it was not where the one before had it.
   [[nodiscard]] const GateFrame::Place* recall(const GateCorner& corner) const;
   void learn(const GateCorner& corner, const glm::ivec3& position);
-  void clear() { entries_.assign(kSize, {}); }
+  void clear() { entries_.clear(); }
 
  private:
   static constexpr std::uint32_t kSizeLog2 = 15;
@@ -74,7 +74,7 @@ class ShapeMemory {
             static_cast<std::uint16_t>(scattered >> 32U)};
   }
 
-  std::vector<Entry> entries_ = std::vector<Entry>(kSize);
+  std::vector<Entry> entries_;  ///< kSize; none before anything is learned
 };
 
 }  // namespace atlaswire::codec
