@@ -39,12 +39,12 @@ class Contest {
 template <std::size_t Ways, std::uint32_t Span>
 struct Forecast {
   Contest<Ways, Span>* contest = nullptr;  ///< null: nothing is foretold
-  std::array<GridOffset, Ways> ways{};
+  std::array<GridOffset, Ways> positions{};
 
-  [[nodiscard]] const GridOffset& best() const { return ways[contest->best()]; }
+  [[nodiscard]] const GridOffset& best() const { return positions[contest->best()]; }
   void learn(const GridOffset& position) const {
     if (contest == nullptr) return;
-    for (std::size_t way = 0; way < Ways; ++way) contest->note(way, grid_distance(position, ways[way]));
+    for (std::size_t way = 0; way < Ways; ++way) contest->note(way, grid_distance(position, positions[way]));
   }
 };
 

@@ -225,7 +225,7 @@ void GateScript<Coder>::report(MetaUpdate& effect, std::uint32_t first_vertex) {
       add(id, residents.shape(p.resident), p.block);
     }
   }
-  for (; arrival != arrivals_.end(); ++arrival) add(arrival->id, arrival->shape, arrival->block);
+  add_arrivals_below(PatchId{~0U});
 }
 
 }  // namespace atlaswire::codec

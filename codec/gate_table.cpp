@@ -49,8 +49,8 @@ void GateTable::open(const Gate& gate) {
   links_[number] = {.gate = gate};
   const std::uint32_t last = std::max(gate.from, gate.to);
   if (last >= ends_.size()) ends_.resize(std::size_t{last} + 1);
-  link(links_, &Linked::leaving, ends_[gate.from].leaving, number);
-  link(links_, &Linked::arriving, ends_[gate.to].arriving, number);
+  link(&Linked::leaving, ends_[gate.from].leaving, number);
+  link(&Linked::arriving, ends_[gate.to].arriving, number);
   index_overflow(gate.from);
 }
 
@@ -67,24 +67,22 @@ void GateTable::index_overflow(std::uint32_t vertex) {
 void GateTable::close(std::uint32_t number) {
   const Gate gate = links_[number].gate;
   if (links_[number].indexed) index_.erase(key_of(gate.from, gate.to));
-  unlink(links_, &Linked::leaving, ends_[gate.from].leaving, number);
-  unlink(links_, &Linked::arriving, ends_[gate.to].arriving, number);
+  unlink(&Linked::leaving, ends_[gate.from].leaving, number);
+  unlink(&Linked::arriving, ends_[gate.to].arriving, number);
   unused_.push_back(number);
 }
 
-void GateTable::link(std::vector<Linked>& links, Link Linked::*list, std::uint32_t& first,
-                     std::uint32_t number) {
-  links[number].*list = {.next = first};
-  if (first != kNone) (links[first].*list).previous = number;
+void GateTable::link(Link Linked::*list, std::uint32_t& first, std::uint32_t number) {
+  links_[number].*list = {.next = first};
+  if (first != kNone) (links_[first].*list).previous = number;
   first = number;
 }
 
-void GateTable::unlink(std::vector<Linked>& links, Link Linked::*list, std::uint32_t& first,
-                       std::uint32_t number) {
-  const Link link = links[number].*list;
-  if (link.next != kNone) (links[link.next].*list).previous = link.previous;
+void GateTable::unlink(Link Linked::*list, std::uint32_t& first, std::uint32_t number) {
+  const Link link = links_[number].*list;
+  if (link.next != kNone) (links_[link.next].*list).previous = link.previous;
   if (link.previous != kNone) {
-    (links[link.previous].*list).next = link.next;
+    (links_[link.previous].*list).next = link.next;
   } else {
     first = link.next;
   }

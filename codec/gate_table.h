@@ -91,10 +91,8 @@ class GateTable {
   void open(const Gate& gate);
   void index_overflow(std::uint32_t vertex);
   void close(std::uint32_t number);
-  static void link(std::vector<Linked>& links, Link Linked::*list, std::uint32_t& first,
-                   std::uint32_t number);
-  static void unlink(std::vector<Linked>& links, Link Linked::*list, std::uint32_t& first,
-                     std::uint32_t number);
+  void link(Link Linked::*list, std::uint32_t& first, std::uint32_t number);
+  void unlink(Link Linked::*list, std::uint32_t& first, std::uint32_t number);
 
   FlatIndex index_;
   std::vector<Linked> links_;

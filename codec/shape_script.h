@@ -290,11 +290,11 @@ void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& sha
     const Offset onward = to - behind_to;
     const Offset beside = from - behind_from;
     if (!from_triangle) {
-      expected.ways.ways = {to + onward, to + beside, to + (onward + beside) / 2};
+      expected.ways.positions = {to + onward, to + beside, to + (onward + beside) / 2};
     } else if (corners == 3) {
-      expected.ways.ways = {to + beside, to + onward, from + beside};
+      expected.ways.positions = {to + beside, to + onward, from + beside};
     } else {
-      expected.ways.ways = {to + (onward + beside) / 2, to + beside, to + onward};
+      expected.ways.positions = {to + (onward + beside) / 2, to + beside, to + onward};
     }
   } else {
     const Offset first = at(shape.corners[(turn + 2) % corners]);
@@ -302,10 +302,10 @@ void ShapeScript<Coder>::expect_attached(const Gate& gate, const PatchShape& sha
       stage = 2;
       const Offset bend = from_triangle ? Offset(0) : (from - to) - (behind_from - behind_to);
       const Offset own = from + (first - to);
-      expected.ways.ways = {own, own + bend, own + bend / 2};
+      expected.ways.positions = {own, own + bend, own + bend / 2};
     } else {
       stage = 1;
-      expected.ways.ways.fill(first + (from - to) / 2);
+      expected.ways.positions.fill(first + (from - to) / 2);
     }
   }
   const std::uint32_t situation = ((corners - 3) * 2 + static_cast<std::uint32_t>(from_triangle)) * 3 + stage;
